@@ -1,0 +1,1 @@
+"""cadpanel turns a free-form building skin into panels that a shop can make from flat sheet."""

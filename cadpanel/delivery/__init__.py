@@ -1,0 +1,1 @@
+"""What leaves the house: the delivery folder, its report and its proof."""

@@ -1,0 +1,34 @@
+"""Every error that cadpanel raises on purpose, so that callers need to catch only one class.
+
+The message is one sentence for the person at the desk: what, where (file, panel), how much, and what to do about it.
+"""
+
+
+class CadpanelError(Exception):
+    """Base class of all errors that cadpanel raises on purpose."""
+
+
+class ReferenceFileError(CadpanelError, ValueError):
+    """The reference cannot be read, or holds nothing that a panel can be made of."""
+
+
+class PanelError(CadpanelError, ValueError):
+    """One named panel cannot be fitted or built.
+
+    Attributes:
+        panel: the panel's name.
+        reason: why it cannot, and what to do about it.
+    """
+
+    def __init__(self, panel: str, reason: str) -> None:
+        super().__init__(f"Panel '{panel}': {reason}")
+        self.panel = panel
+        self.reason = reason
+
+
+class SettingsError(CadpanelError, ValueError):
+    """A setting is out of its range or contradicts another one."""
+
+
+class DeliveryError(CadpanelError, OSError):
+    """A delivery folder cannot be written or read."""

@@ -1,0 +1,1 @@
+"""Shape features as chains of rulings, and the catalogue of those that have a name."""

@@ -1,0 +1,1 @@
+"""From a reference to fitted panels: local, two-stage and concurrent."""

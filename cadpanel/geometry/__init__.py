@@ -1,0 +1,1 @@
+"""Rulings, planes, cones, sections and development: pure NumPy functions in millimetres and radians."""

@@ -1,0 +1,98 @@
+"""One panel as plain arrays: rulings, the patches between them, and the planes that cut the ends.
+
+Every length is in millimetres, every angle in radians. This is what the fit hands to the solids, the report and the
+measures; it knows nothing of unknowns, samples or CAD kernels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanePatch:
+    """A flat patch between two consecutive rulings; its plane is that of either ruling (they agree)."""
+
+    kind: Literal["plane"] = "plane"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConePatch:
+    """A right circular cone (a cylinder where half_angle is 0) between ruling i and ruling i + 1.
+
+    With the frame (p, t, n) of ruling i, the axis passes through c = p - radius * n in the direction
+    a = cos(half_angle) * t - sin(half_angle) * n, and turning ruling i about that axis by `sweep` (right-handed) gives
+    ruling i + 1. The apex is never stored: it runs to infinity exactly where real panels lie.
+
+    Attributes:
+        radius: normal radius in mm, the distance from p to the axis measured along n, nowhere 0. Positive where the
+            patch is convex towards n, negative where it is concave.
+        half_angle: in radians, signed: positive where the cone widens along t (for a positive radius).
+        sweep: in radians, of the same sign as the radius, so that the walk goes towards b = t x n.
+        kind: "cylinder" where the feature asks for one (half_angle is then exactly 0), else "cone".
+    """
+
+    radius: float
+    half_angle: float
+    sweep: float
+    kind: Literal["cone", "cylinder"] = "cone"
+
+
+Patch = PlanePatch | ConePatch
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelShape:
+    """A panel's skin: k patches between k + 1 rulings, trimmed by one cut plane at either end.
+
+    A ruling is an orthonormal frame: point p on the skin, direction t along the straight generatrix, unit normal n of
+    the skin, which points OUTWARD (away from the inside of the building), and b = t x n, the way the walk goes.
+    The first and the last ruling are the panel's long free edges. End 0 lies where t comes from, end 1 where t goes to.
+
+    Attributes:
+        name: the panel's stable name.
+        feature: name of the shape feature, for example "plane-cone-plane".
+        points: (k + 1, 3) a point on each ruling, mm.
+        directions: (k + 1, 3) unit t.
+        normals: (k + 1, 3) unit n.
+        patches: the k patches in the order of the walk.
+        cut_points: (2, 3) a point on the cut plane of end 0 and end 1, mm.
+        cut_normals: (2, 3) unit normals of the cut planes, both with a positive component along t.
+    """
+
+    name: str
+    feature: str
+    points: Array
+    directions: Array
+    normals: Array
+    patches: tuple[Patch, ...]
+    cut_points: Array
+    cut_normals: Array
+
+    def corners(self) -> Array:
+        """(2, k + 1, 3) where each ruling pierces the cut plane of end 0 and of end 1, mm."""
+        to_plane = self.cut_points[:, None, :] - self.points[None, :, :]
+        height = np.einsum("erx,ex->er", to_plane, self.cut_normals)
+        rate = np.einsum("rx,ex->er", self.directions, self.cut_normals)
+        return self.points + (height / rate)[..., None] * self.directions
+
+    def binormals(self) -> Array:
+        """(k + 1, 3) unit b = t x n, the way the walk goes."""
+        return np.cross(self.directions, self.normals)
+
+    def offset(self, distance: float) -> PanelShape:
+        """The parallel skin at `distance` mm along n (negative: inwards), cut by the same two planes.
+
+        It has the same rulings' directions and the same half angles; only the normal radii change (exactly).
+        """
+        patches = tuple(
+            replace(patch, radius=patch.radius + distance) if isinstance(patch, ConePatch) else patch
+            for patch in self.patches
+        )
+        return replace(self, points=self.points + distance * self.normals, patches=patches)

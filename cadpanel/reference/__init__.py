@@ -1,0 +1,1 @@
+"""What is to be approximated: sampled faces, outlines and neighbours, as arrays only."""

@@ -1,0 +1,1 @@
+"""Levenberg-Marquardt on sparse blocks; knows nothing of panels."""

@@ -1,0 +1,166 @@
+"""A folder that is written whole or not at all.
+
+Everything goes into a hidden folder beside the target, so on the same disk; a rename then puts it in place in one step.
+Whatever goes wrong before that leaves the target as it was, and nothing else behind.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from cadpanel.errors import CadpanelError, DeliveryError
+
+MARKS_OF_A_DELIVERY = ("report.json", "compare.json")
+"""A folder that holds one of these was written by cadpanel, and may be overwritten when asked."""
+
+_DISK_FAULTS = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EFBIG})
+
+
+@contextmanager
+def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
+    """Give a folder to write into; put it in the target's place when the block ends well, else remove it.
+
+    Args:
+        target: where the delivery shall stand; missing parents are made (and removed again on failure).
+        overwrite: replace an existing delivery. A folder that is not one is never replaced unless it is empty.
+
+    Yields:
+        The folder to write into; it is not the target, so do not keep its path.
+
+    Raises:
+        DeliveryError: the target is refused, or cannot be written; one sentence says why.
+    """
+    place = Path(os.path.realpath(target))  # a link to a folder keeps pointing at it
+    _refuse_if_taken(place, target, overwrite=overwrite)
+    made = _make_parents(place, target)
+    work = place.parent / f".cadpanel-{secrets.token_hex(4)}.part"
+    try:
+        _make_folder(work, target)
+        yield work
+        _refuse_if_taken(place, target, overwrite=overwrite)  # a fit takes minutes: someone may have come first
+        replaced = _put_in_place(work, place, target)
+    except BaseException as error:  # an interrupt must clean up as well
+        shutil.rmtree(work, ignore_errors=True)
+        _remove_empty(made)
+        # A writer may have told its own story about the hidden folder; the reader knows only the target.
+        cause = error.__cause__ if isinstance(error, DeliveryError) else error
+        if isinstance(cause, OSError) and not isinstance(cause, CadpanelError) and _is_about(cause, work):
+            raise DeliveryError(_sentence(target, cause)) from cause
+        raise
+    if replaced is not None:
+        _delete(replaced, target)
+
+
+def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
+    """Refuse a target that holds something which was not asked to be replaced, or which is not ours to replace."""
+    try:
+        place.lstat()
+        if not place.is_dir():
+            raise DeliveryError(f"'{target}' is a file: name a folder to write the delivery to.")
+        if not overwrite:
+            raise DeliveryError(f"'{target}' exists already: name another folder, or replace it with --overwrite.")
+        is_ours = any((place / mark).is_file() for mark in MARKS_OF_A_DELIVERY)
+        if not is_ours and any(place.iterdir()):
+            raise DeliveryError(
+                f"'{target}' holds files but no {' or '.join(MARKS_OF_A_DELIVERY)}, so it is not a delivery of "
+                "cadpanel and is not overwritten: name another folder."
+            )
+    except DeliveryError:
+        raise
+    except (FileNotFoundError, NotADirectoryError):
+        return  # nothing there; whether it can be made is for _make_parents to say
+    except OSError as error:
+        raise DeliveryError(_sentence(target, error)) from error
+
+
+def _make_parents(place: Path, target: Path) -> list[Path]:
+    """Make the folders above the target; return those that were not there, deepest first."""
+    missing = []
+    folder = place.parent
+    while not os.path.lexists(folder):
+        missing.append(folder)
+        folder = folder.parent
+    if not folder.is_dir():
+        raise DeliveryError(f"'{target}' cannot be written: '{folder}' is a file, not a folder.")
+    try:
+        for parent in reversed(missing):
+            parent.mkdir(exist_ok=True)
+    except OSError as error:
+        _remove_empty(missing)
+        raise DeliveryError(_sentence(target, error)) from error
+    return missing
+
+
+def _make_folder(work: Path, target: Path) -> None:
+    try:
+        work.mkdir()
+    except OSError as error:
+        raise DeliveryError(_sentence(target, error)) from error
+
+
+def _put_in_place(work: Path, place: Path, target: Path) -> Path | None:
+    """Rename the finished folder to its place; an old delivery stands aside until then, and returns on any error.
+
+    Returns:
+        Where the old delivery stands now, to be deleted; None if there was none.
+    """
+    if not place.exists():
+        _rename(work, place, target)
+        return None
+    aside = work.with_suffix(".old")
+    _rename(place, aside, target)
+    try:
+        _rename(work, place, target)
+    except BaseException:
+        if not place.exists():
+            aside.rename(place)
+        raise
+    return aside
+
+
+def _delete(aside: Path, target: Path) -> None:
+    try:
+        shutil.rmtree(aside)
+    except OSError as error:
+        raise DeliveryError(
+            f"'{target}' is written, but what stood there before could not be deleted from '{aside}': {error.strerror}."
+        ) from error
+
+
+def _rename(source: Path, destination: Path, target: Path) -> None:
+    try:
+        source.rename(destination)
+    except OSError as error:
+        raise DeliveryError(_sentence(target, error)) from error
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    """Remove the folders, deepest first, as far as they are there and empty."""
+    for folder in folders:
+        with suppress(OSError):  # never made, or someone else's by now
+            folder.rmdir()
+
+
+def _is_about(error: OSError, work: Path) -> bool:
+    """Whether the disk or the folder is at fault, and not some other file that the block read."""
+    names = [str(name) for name in (error.filename, error.filename2) if name is not None]
+    return error.errno in _DISK_FAULTS or any(Path(name).is_relative_to(work) for name in names)
+
+
+def _sentence(target: Path, error: OSError) -> str:
+    reasons = {
+        errno.ENOSPC: "the disk is full",
+        errno.EDQUOT: "the disk quota is used up",
+        errno.EROFS: "the disk is read-only",
+        errno.EACCES: "writing there is not permitted",
+        errno.EPERM: "writing there is not permitted",
+        errno.ENAMETOOLONG: "the name is too long",
+    }
+    reason = reasons.get(error.errno or 0, error.strerror or str(error))
+    return f"'{target}' cannot be written: {reason}; nothing was written."

@@ -1,0 +1,97 @@
+"""JSON files that other programs rely on: checked when read, the same bytes for the same content when written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, NoReturn, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from cadpanel.errors import DeliveryError
+
+NonNegative = Annotated[float, Field(ge=0.0)]
+Vector = tuple[float, float, float]
+
+
+class Record(BaseModel):
+    """Base of all records: finite numbers only, keys may be added, a record does not change once it is made."""
+
+    model_config = ConfigDict(
+        frozen=True,
+        extra="allow",
+        allow_inf_nan=False,
+        ser_json_inf_nan="constants",  # else NaN in an added key would quietly become null
+        validate_by_name=True,
+        validate_by_alias=True,
+    )
+
+
+RecordType = TypeVar("RecordType", bound=Record)
+
+
+def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) -> RecordType:
+    """The record in a file.
+
+    Args:
+        path: the file.
+        model: what it must hold.
+        schema: what its key "schema" must say.
+        what: the file's kind for the reader of an error, for example "a cadpanel report".
+
+    Raises:
+        DeliveryError: the file cannot be read, is not JSON, or is not such a record; one sentence says where.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be read: {error.strerror}.") from error
+    except UnicodeDecodeError as error:
+        raise DeliveryError(f"'{path}' is not {what}: it is not UTF-8 text (byte {error.start}).") from error
+    try:
+        content = json.loads(text, parse_constant=_refuse_constant)
+        _check_schema(content, schema)
+        return model.model_validate_json(text, strict=True)
+    except ValidationError as error:
+        raise DeliveryError(f"'{path}' is not {what}: {_first_fault(error)}.") from error
+    except json.JSONDecodeError as error:
+        raise DeliveryError(f"'{path}' is not {what}: {error.msg} (line {error.lineno}).") from error
+    except (ValueError, RecursionError) as error:
+        raise DeliveryError(f"'{path}' is not {what}: {error}.") from error
+
+
+def write_json(record: Record, path: Path) -> None:
+    """Write a record as indented UTF-8 JSON, keys in the order in which the record lists them.
+
+    Raises:
+        DeliveryError: the file cannot be written, or an added key holds a number that is not finite.
+    """
+    try:
+        content = record.model_dump(mode="json", by_alias=True)
+        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    except ValueError as error:
+        raise DeliveryError(f"'{path}' is not written: {error}.") from error
+    try:
+        path.write_bytes(f"{text}\n".encode())
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be written: {error.strerror}.") from error
+
+
+def _refuse_constant(name: str) -> NoReturn:
+    raise ValueError(f"it holds {name}, and only finite numbers are allowed")
+
+
+def _check_schema(content: object, schema: str) -> None:
+    """The key alone tells a report from any other JSON, so it is asked for before the rest is judged."""
+    found = content.get("schema") if isinstance(content, dict) else None
+    if found != schema:
+        raise ValueError(f'its "schema" is {json.dumps(found)}, and "{schema}" is expected')
+
+
+def _first_fault(error: ValidationError) -> str:
+    """The first thing that is wrong, with its place; how many more there are."""
+    faults = error.errors(include_url=False, include_context=False, include_input=False)
+    place = ".".join(str(step) for step in faults[0]["loc"])
+    message = faults[0]["msg"].removeprefix("Value error, ")
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    return f"{place}: {message}{more}" if place else f"{message}{more}"

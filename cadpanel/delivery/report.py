@@ -1,0 +1,268 @@
+"""report.json: the numbers of one delivery, as records that refuse what does not belong in them.
+
+Millimetres, square and cubic millimetres, and degrees throughout; the one exception, `max_tangency_error`, is in
+radians and says so.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from cadpanel.delivery.jsonfile import NonNegative, Record, Vector, read_json, write_json
+
+NonNegativeCount = Annotated[int, Field(ge=0)]
+End = Literal[0, 1]
+
+
+class UnitsModel(Record):
+    """The units of every length and angle in the file."""
+
+    length: Literal["mm"] = "mm"
+    angle: Literal["deg"] = "deg"
+
+
+class ReferenceModel(Record):
+    """What was approximated: the file, and how many panels and seams it holds."""
+
+    file: str
+    panels: NonNegativeCount
+    seams: NonNegativeCount
+
+
+class SettingsModel(Record):
+    """Everything that is needed to run the fit again; more settings may be added as further keys.
+
+    Attributes:
+        feature: name of the shape feature.
+        method: name of the method.
+        gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
+        thickness: of the sheet, mm.
+        seed: of the random numbers.
+    """
+
+    feature: str
+    method: str
+    gap_tolerance: Annotated[float, Field(gt=0.0)] | None
+    thickness: NonNegative
+    seed: int
+
+
+class PlanePatchModel(Record):
+    """A flat patch: its outward unit normal and a point on it, mm."""
+
+    kind: Literal["plane"] = "plane"
+    normal: Vector
+    point: Vector
+
+
+class ConePatchModel(Record):
+    """A conical patch.
+
+    Attributes:
+        apex: mm.
+        axis: unit vector, from the apex towards the patch.
+        half_angle: degrees.
+        radius_min: smallest distance of the trimmed patch from its axis, mm.
+        radius_max: largest distance, mm.
+        sweep: angle between the two rulings about the axis, degrees.
+    """
+
+    kind: Literal["cone"] = "cone"
+    apex: Vector
+    axis: Vector
+    half_angle: Annotated[float, Field(gt=0.0, lt=90.0)]
+    radius_min: NonNegative
+    radius_max: NonNegative
+    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
+
+
+class CylinderPatchModel(Record):
+    """A cylindrical patch.
+
+    Attributes:
+        axis: unit vector.
+        axis_point: a point on the axis, mm.
+        radius_min: the radius, mm.
+        radius_max: the radius again, so that readers need not tell cones from cylinders.
+        sweep: angle between the two rulings about the axis, degrees.
+    """
+
+    kind: Literal["cylinder"] = "cylinder"
+    axis: Vector
+    axis_point: Vector
+    radius_min: NonNegative
+    radius_max: NonNegative
+    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
+
+
+PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]
+
+
+class PanelModel(Record):
+    """One panel as it was fitted and built.
+
+    Attributes:
+        name: the panel's stable name.
+        feature: name of its shape feature.
+        rms_deviation: root mean square distance of the reference's samples to their patches, mm.
+        max_deviation: largest such distance, mm.
+        max_corner_drift: largest distance of a corner from its reference corner, mm.
+        max_drift_along: the same, counted along the strip only, mm.
+        max_free_edge_drift: the same, counted across the free edges only, mm.
+        area: of the skin, mm^2.
+        volume: of the solid, from the formula, mm^3.
+        patches: in the order of the walk across the panel.
+        notes: what the fabricator should know, one sentence each.
+    """
+
+    name: str
+    feature: str
+    rms_deviation: NonNegative
+    max_deviation: NonNegative
+    max_corner_drift: NonNegative
+    max_drift_along: NonNegative
+    max_free_edge_drift: NonNegative
+    area: NonNegative
+    volume: NonNegative
+    patches: tuple[PatchModel, ...]
+    notes: tuple[str, ...] = ()
+
+
+class SeamModel(Record):
+    """Two panels that meet end to end, and how well they do.
+
+    Attributes:
+        panels: the two names.
+        ends: which end (0 or 1) of each panel lies on the seam.
+        corner_gaps: distance between corresponding corners, in the order of the first panel's walk, mm.
+        max_corner_gap: the largest of them, mm.
+        max_seam_gap: symmetric Hausdorff distance between the two end curves, mm.
+        max_kink: largest angle between the two skins' normals across the seam, degrees.
+    """
+
+    panels: tuple[str, str]
+    ends: tuple[End, End]
+    corner_gaps: tuple[NonNegative, ...]
+    max_corner_gap: NonNegative
+    max_seam_gap: NonNegative
+    max_kink: NonNegative
+
+
+class SummaryModel(Record):
+    """The measures of a whole fit, mm and degrees; gaps and kink are 0 where there is no seam.
+
+    Attributes:
+        max_corner_gap: largest distance between two corresponding corners.
+        max_seam_gap: largest distance between two end curves, along the whole seam.
+        max_kink: largest angle between two neighbouring skins' normals.
+        rms_deviation: root mean square over all samples.
+        max_deviation: largest distance of a sample to its patch.
+        hausdorff: two-sided distance between the trimmed skin and the reference.
+        max_corner_drift: largest distance of a corner from its reference corner.
+        max_free_edge_drift: the same, counted across the free edges only.
+        local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
+        tolerance_met: whether the gap tolerance holds at every seam.
+    """
+
+    max_corner_gap: NonNegative
+    max_seam_gap: NonNegative
+    max_kink: NonNegative
+    rms_deviation: NonNegative
+    max_deviation: NonNegative
+    hausdorff: NonNegative
+    max_corner_drift: NonNegative
+    max_free_edge_drift: NonNegative
+    local_rms_multiple: NonNegative | None
+    tolerance_met: bool
+
+
+class BaselinesModel(Record):
+    """The same measures for the methods that ours is held against."""
+
+    local: SummaryModel
+    two_stage: SummaryModel
+
+
+class CertificateModel(Record):
+    """What reading panels.step and skins.step back showed.
+
+    Attributes:
+        solids: how many were found.
+        valid: whether all of them pass the kernel's exact check and are closed.
+        face_kinds: how many faces of each kind the panels' main faces are.
+        max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
+        volume_error: largest relative difference between a solid's volume and the formula's.
+        names_kept: whether every panel was found again under its name.
+        max_seam_gap: mm, measured on the faces that were read.
+        failures: what does not hold, one sentence each; empty where everything does.
+    """
+
+    solids: NonNegativeCount
+    valid: bool
+    face_kinds: dict[str, NonNegativeCount]
+    max_tangency_error: NonNegative
+    volume_error: NonNegative
+    names_kept: bool
+    max_seam_gap: NonNegative
+    failures: tuple[str, ...] = ()
+
+
+class TimingModel(Record):
+    """Wall-clock seconds of each step."""
+
+    read: NonNegative
+    fit: NonNegative
+    build: NonNegative
+    write: NonNegative
+    verify: NonNegative
+
+
+class ReportModel(Record):
+    """report.json as a whole; its parts must agree with one another."""
+
+    schema_name: Literal["cadpanel.report/1"] = Field(default="cadpanel.report/1", alias="schema")
+    units: UnitsModel = UnitsModel()
+    reference: ReferenceModel
+    settings: SettingsModel
+    panels: tuple[PanelModel, ...]
+    seams: tuple[SeamModel, ...]
+    summary: SummaryModel
+    baselines: BaselinesModel
+    certificate: CertificateModel
+    timing: TimingModel
+
+    @model_validator(mode="after")
+    def _check_that_parts_agree(self) -> ReportModel:
+        names = {panel.name for panel in self.panels}
+        if len(names) != len(self.panels):
+            raise ValueError("two panels have the same name")
+        if len(self.panels) != self.reference.panels:
+            raise ValueError(f"the reference counts {self.reference.panels} panels, the list {len(self.panels)}")
+        if len(self.seams) != self.reference.seams:
+            raise ValueError(f"the reference counts {self.reference.seams} seams, the list {len(self.seams)}")
+        for seam in self.seams:
+            for name in seam.panels:
+                if name not in names:
+                    raise ValueError(f"a seam names the panel '{name}', which is not in the list")
+        return self
+
+
+def read_report(path: Path) -> ReportModel:
+    """The report in a file.
+
+    Raises:
+        DeliveryError: it cannot be read or is not a report; one sentence says where.
+    """
+    return read_json(path, ReportModel, schema="cadpanel.report/1", what="a cadpanel report")
+
+
+def write_report(report: ReportModel, path: Path) -> None:
+    """Write the report; the same report gives the same bytes.
+
+    Raises:
+        DeliveryError: it cannot be written.
+    """
+    write_json(report, path)

@@ -1,0 +1,266 @@
+"""A delivery folder is there whole or not at all, and nothing else is ever touched."""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cadpanel.delivery.folder import MARKS_OF_A_DELIVERY, delivery_folder
+from cadpanel.delivery.jsonfile import Record, write_json
+from cadpanel.errors import DeliveryError, PanelError
+
+
+def deliver(target: Path, content: str = "new", *, overwrite: bool = False) -> None:
+    with delivery_folder(target, overwrite=overwrite) as folder:
+        (folder / "report.json").write_text(content)
+        (folder / "parts").mkdir()
+        (folder / "parts" / "panel.step").write_text(content)
+
+
+def everything_below(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+WHOLE = ["report.json", "parts", "parts/panel.step"]
+
+
+def test_a_finished_folder_stands_in_its_place_and_alone(tmp_path: Path) -> None:
+    deliver(tmp_path / "out")
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def test_the_folder_has_the_permissions_of_any_other_folder(tmp_path: Path) -> None:
+    (tmp_path / "plain").mkdir()
+    deliver(tmp_path / "out")
+    assert (tmp_path / "out").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+def test_missing_parents_are_made(tmp_path: Path) -> None:
+    deliver(tmp_path / "a" / "b" / "out")
+    assert (tmp_path / "a" / "b" / "out" / "report.json").read_text() == "new"
+
+
+def test_a_target_relative_to_the_working_directory_is_fine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    deliver(Path("out"))
+    assert (tmp_path / "out" / "report.json").is_file()
+
+
+def test_a_link_to_a_folder_keeps_pointing_at_it(tmp_path: Path) -> None:
+    deliver(tmp_path / "real", "old")
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    deliver(tmp_path / "link", overwrite=True)
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real" / "report.json").read_text() == "new"
+
+
+# ------------------------------------------------------------------------------------------------- an existing target
+@pytest.mark.parametrize("holds_a_delivery", [True, False])
+def test_an_existing_folder_is_refused_before_any_work_is_done(tmp_path: Path, *, holds_a_delivery: bool) -> None:
+    target = tmp_path / "out"
+    if holds_a_delivery:
+        deliver(target, "old")
+    else:
+        target.mkdir()
+    before = everything_below(tmp_path)
+    with pytest.raises(DeliveryError, match="exists already"):
+        deliver(target)
+    assert everything_below(tmp_path) == before
+
+
+@pytest.mark.parametrize("mark", MARKS_OF_A_DELIVERY)
+def test_overwrite_replaces_a_delivery_whole(tmp_path: Path, mark: str) -> None:
+    target = tmp_path / "out"
+    target.mkdir()
+    (target / mark).write_text("old")
+    (target / "left_over.txt").write_text("old")
+    deliver(target, overwrite=True)
+    assert everything_below(target) == sorted(WHOLE)
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def test_overwrite_fills_an_empty_folder(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    deliver(tmp_path / "out", overwrite=True)
+    assert (tmp_path / "out" / "report.json").is_file()
+
+
+def test_overwrite_never_replaces_a_folder_that_is_not_a_delivery(tmp_path: Path) -> None:
+    target = tmp_path / "photographs"
+    target.mkdir()
+    (target / "family.jpg").write_text("precious")
+    with pytest.raises(DeliveryError, match="is not a delivery"):
+        deliver(target, overwrite=True)
+    assert everything_below(tmp_path) == ["photographs", "photographs/family.jpg"]
+
+
+def test_a_folder_that_came_into_being_during_the_work_is_not_replaced(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+
+    def lose_the_race() -> None:
+        with delivery_folder(target) as folder:
+            (folder / "report.json").write_text("second")
+            deliver(target, "first")
+
+    with pytest.raises(DeliveryError, match="exists already"):
+        lose_the_race()
+    assert (target / "report.json").read_text() == "first"
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+@pytest.mark.parametrize("overwrite", [True, False])
+def test_a_file_in_the_targets_place_is_refused(tmp_path: Path, *, overwrite: bool) -> None:
+    (tmp_path / "out").write_text("a file")
+    with pytest.raises(DeliveryError, match="is a file"):
+        deliver(tmp_path / "out", overwrite=overwrite)
+    assert (tmp_path / "out").read_text() == "a file"
+
+
+@pytest.mark.parametrize("below", ["out", "deeper/out"])
+def test_a_file_in_a_parents_place_is_refused(tmp_path: Path, below: str) -> None:
+    (tmp_path / "parent").write_text("a file")
+    with pytest.raises(DeliveryError, match="is a file, not a folder"):
+        deliver(tmp_path / "parent" / below)
+    assert everything_below(tmp_path) == ["parent"]
+
+
+# ------------------------------------------------------------------------------------------------------ it goes wrong
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), SystemExit(143), PanelError("P1", "folds over."), KeyError(1)])
+@pytest.mark.parametrize("overwrite", [True, False])
+def test_whatever_stops_the_work_leaves_nothing_and_keeps_the_old(
+    tmp_path: Path, error: BaseException, *, overwrite: bool
+) -> None:
+    target = tmp_path / "a" / "out"
+    if overwrite:
+        deliver(target, "old")
+    before = everything_below(tmp_path)
+
+    def stop_half_way() -> None:
+        with delivery_folder(target, overwrite=overwrite) as folder:
+            (folder / "report.json").write_text("half")
+            raise error
+
+    with pytest.raises(type(error)) as raised:
+        stop_half_way()
+    assert raised.value is error
+    assert everything_below(tmp_path) == before
+    if overwrite:
+        assert (target / "report.json").read_text() == "old"
+
+
+def test_a_disk_that_is_full_is_one_sentence_about_the_target(tmp_path: Path) -> None:
+    def fill_the_disk() -> None:
+        with delivery_folder(tmp_path / "out") as folder:
+            (folder / "panels.step").symlink_to("/dev/full")
+            (folder / "panels.step").write_text("x" * 100)
+
+    with pytest.raises(DeliveryError, match=r"out' cannot be written: the disk is full; nothing was written\.$"):
+        fill_the_disk()
+    assert everything_below(tmp_path) == []
+
+
+def test_a_writers_own_complaint_does_not_show_the_hidden_folder(tmp_path: Path) -> None:
+    def fill_the_disk() -> None:
+        with delivery_folder(tmp_path / "out") as folder:
+            (folder / "report.json").symlink_to("/dev/full")
+            write_json(Record(), folder / "report.json")
+
+    with pytest.raises(DeliveryError, match="the disk is full") as raised:
+        fill_the_disk()
+    assert ".cadpanel-" not in str(raised.value)
+    assert everything_below(tmp_path) == []
+
+
+def test_a_fault_of_another_file_is_not_blamed_on_the_target(tmp_path: Path) -> None:
+    def read_what_is_missing() -> None:
+        with delivery_folder(tmp_path / "out"):
+            (tmp_path / "missing.step").read_text()
+
+    with pytest.raises(FileNotFoundError, match=re.escape("missing.step")):
+        read_what_is_missing()
+    assert everything_below(tmp_path) == []
+
+
+def refuse(code: int, below: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the operating system refuse to make any folder directly in `below`, as root is refused nothing."""
+    make = Path.mkdir
+
+    def mkdir(self: Path, mode: int = 0o777, parents: bool = False, exist_ok: bool = False) -> None:
+        if self.parent == below:
+            raise OSError(code, os.strerror(code), str(self))
+        make(self, mode, parents, exist_ok)
+
+    monkeypatch.setattr(Path, "mkdir", mkdir)
+
+
+@pytest.mark.parametrize(
+    ("code", "reason"),
+    [
+        (errno.EROFS, "the disk is read-only"),
+        (errno.EACCES, "not permitted"),
+        (errno.ENOSPC, "the disk is full"),
+        (errno.EMLINK, "Too many links"),
+    ],
+)
+@pytest.mark.parametrize("below", ["out", "a/out", "a/b/out"])
+def test_a_place_that_cannot_be_written_to_is_refused_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, reason: str, below: str
+) -> None:
+    refuse(code, (tmp_path / below).parent, monkeypatch)
+    began = []
+
+    def begin() -> None:
+        with delivery_folder(tmp_path / below):
+            began.append(True)
+
+    with pytest.raises(DeliveryError, match=reason):
+        begin()
+    assert not began
+    assert everything_below(tmp_path) == []
+
+
+def test_a_name_that_is_too_long_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(DeliveryError, match="the name is too long"):
+        deliver(tmp_path / ("x" * 300))
+    assert everything_below(tmp_path) == []
+
+
+@pytest.mark.parametrize("error", [OSError(errno.EBUSY, "Device or resource busy"), KeyboardInterrupt()])
+def test_the_old_delivery_returns_when_the_new_one_cannot_take_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+) -> None:
+    target = tmp_path / "out"
+    deliver(target, "old")
+    rename = Path.rename
+
+    def fail_for_the_new_one(self: Path, destination: Path) -> Path:
+        if self.suffix == ".part":
+            raise error
+        return rename(self, destination)
+
+    monkeypatch.setattr(Path, "rename", fail_for_the_new_one)
+    with pytest.raises((DeliveryError, KeyboardInterrupt)):
+        deliver(target, overwrite=True)
+    assert (target / "report.json").read_text() == "old"
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def test_an_old_delivery_that_cannot_be_deleted_is_told_and_the_new_one_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "out"
+    deliver(target, "old")
+
+    def fail(path: Path, ignore_errors: bool = False) -> None:
+        if not ignore_errors:
+            raise OSError(errno.EIO, "Input/output error", str(path))
+
+    monkeypatch.setattr(shutil, "rmtree", fail)
+    with pytest.raises(DeliveryError, match="is written, but what stood there before could not be deleted"):
+        deliver(target, overwrite=True)
+    assert (target / "report.json").read_text() == "new"

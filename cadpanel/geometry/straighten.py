@@ -52,7 +52,7 @@ def _straighten_patch(shape: PanelShape, index: int) -> PanelShape:
     direction, normal = shape.directions[index], shape.normals[index]
     middle = shape.corners()[:, index].mean(axis=0)
     widened = float((middle - shape.points[index]) @ direction) * math.tan(patch.half_angle)
-    cylinder = replace(patch, radius=patch.radius + widened, half_angle=0.0)
+    cylinder = replace(patch, radius=patch.radius + widened, half_angle=0.0, kind="cylinder")
     before = _turn_about_axis(middle, direction, normal, replace(patch, radius=cylinder.radius))
     after = _turn_about_axis(middle, direction, normal, cylinder)
     rotation = after[1] @ before[1].T

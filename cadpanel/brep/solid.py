@@ -1,0 +1,107 @@
+"""A panel's sheet as an exact solid: two parallel skins, planar end walls in the cut planes, planar side walls."""
+
+from __future__ import annotations
+
+from OCP.BRep import BRep_Builder
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
+
+from cadpanel.brep import edges, surfaces
+from cadpanel.brep.skin import SkinTopology, skin_topology
+from cadpanel.geometry.buildable import SkinSide, check_buildable, other_face
+from cadpanel.geometry.shape import Array, PanelShape
+from cadpanel.geometry.straighten import straighten
+
+_BUILDER = BRep_Builder()
+
+
+def build_solid(shape: PanelShape, thickness: float, skin_side: SkinSide = "outer") -> TopoDS_Solid:
+    """The sheet of `thickness` mm on the panel's skin; with "outer" it lies at -n, with "inner" at +n.
+
+    The other face is the parallel skin (plane by plane, cone by cone with the same half angle), the end walls lie in
+    the cut planes, and each side wall holds the free ruling and the skin's normal there. A cone of half angle 5e-6 rad
+    or less is built as a cylinder; `straighten` says which and what it moves.
+
+    Raises:
+        PanelError: if the sheet cannot be built (see `check_buildable`).
+    """
+    check_buildable(shape, thickness, skin_side)
+    own = straighten(shape).shape
+    away = other_face(own, thickness, skin_side)
+    upper, lower = (own, away) if skin_side == "outer" else (away, own)
+    top, bottom = skin_topology(upper), skin_topology(lower)
+    faces: list[TopoDS_Shape] = [*top.faces, *(face.Reversed() for face in bottom.faces)]
+    faces += _walls(own, top, bottom)
+    shell = TopoDS_Shell()
+    _BUILDER.MakeShell(shell)
+    for face in faces:
+        _BUILDER.Add(shell, face)
+    shell.Closed(True)
+    solid = TopoDS_Solid()
+    _BUILDER.MakeSolid(solid)
+    _BUILDER.Add(solid, shell)
+    return solid
+
+
+def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:
+    """Two side walls and two end walls, all with outward normals."""
+    last = len(shape.points) - 1
+    posts = {
+        (end, ruling): edges.line_edge(
+            bottom.vertices[end][ruling],
+            top.vertices[end][ruling],
+            bottom.corners[end, ruling],
+            top.corners[end, ruling],
+        )
+        for end in range(2)
+        for ruling in (0, last)
+    }
+    sides = [
+        _side_wall(shape, ruling, outward, top, bottom, (posts[0, ruling], posts[1, ruling]))
+        for ruling, outward in ((0, -1), (last, 1))
+    ]
+    ends = [
+        _end_wall(top, bottom, end, outward * shape.cut_normals[end], (posts[end, 0], posts[end, last]))
+        for end, outward in ((0, -1), (1, 1))
+    ]
+    return sides + ends
+
+
+def _side_wall(
+    shape: PanelShape,
+    ruling: int,
+    outward: int,
+    top: SkinTopology,
+    bottom: SkinTopology,
+    posts: tuple[TopoDS_Edge, TopoDS_Edge],
+) -> TopoDS_Face:
+    """The wall through a free ruling and its normal; `outward` is +1 where it faces along b."""
+    loop = [bottom.rulings[ruling].Reversed(), posts[0], top.rulings[ruling], posts[1].Reversed()]
+    # t then n turns about t x n = b, so up the far post and back along the top is the loop about b, and this is -b's.
+    if outward > 0:
+        loop = [edge.Reversed() for edge in reversed(loop)]
+    normal = outward * shape.binormals()[ruling]
+    wall = surfaces.plane_surface(bottom.corners[0, ruling], normal, shape.directions[ruling])
+    return edges.face_on(wall.surface, wall.agrees, loop)
+
+
+def _end_wall(
+    top: SkinTopology, bottom: SkinTopology, end: int, normal: Array, posts: tuple[TopoDS_Edge, TopoDS_Edge]
+) -> TopoDS_Face:
+    """The wall in a cut plane. At end 0, seen against its outward normal, the walk along b goes to the right."""
+    loop: list[TopoDS_Shape] = [posts[0], *top.ends[end], posts[1].Reversed()]
+    loop += [edge.Reversed() for edge in reversed(bottom.ends[end])]
+    # b then n turns about b x n = -t: the loop bottom, last post, top, first post is that of end 0.
+    if end == 0:
+        loop = [edge.Reversed() for edge in reversed(loop)]
+    corners = bottom.corners[end]
+    wall = surfaces.plane_surface(corners[0], normal, corners[-1] - corners[0])
+    return edges.face_on(wall.surface, wall.agrees, loop)
+
+
+def volume_of(shape: TopoDS_Shape) -> float:
+    """The kernel's own volume of a solid, mm3: positive where its faces point outwards."""
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties)
+    return float(properties.Mass())

@@ -1,0 +1,81 @@
+"""The program `cadpanel`: gathers the commands, and turns what goes wrong into one sentence and an exit code."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from importlib.metadata import version
+from typing import Annotated, NoReturn
+
+import typer
+
+from cadpanel.errors import CadpanelError
+
+EXIT_REFUSED = 2
+"""The input, a setting or the output folder was refused."""
+EXIT_INTERRUPTED = 130
+EXIT_TERMINATED = 143
+
+COMMANDS: tuple[Callable[..., None], ...] = ()
+"""One function a command, from a file of its own; its name is the command's, its docstring the help."""
+
+app = typer.Typer(name="cadpanel", add_completion=False, pretty_exceptions_enable=False)
+
+
+def _show_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"cadpanel {version('cadpanel')}")
+        raise typer.Exit
+
+
+@app.callback()
+def cadpanel(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    """Fit developable panels to a free-form building skin and deliver them as exact solids in STEP."""
+
+
+for command in COMMANDS:
+    app.command()(command)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command.
+
+    Args:
+        arguments: the words after `cadpanel`; those of the command line if None.
+
+    Returns:
+        The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
+        sentence on stderr; 130 interrupted.
+    """
+    signal.signal(signal.SIGTERM, _stop)
+    try:
+        status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)
+    except typer.TyperException as error:
+        return _refuse(f"{error.format_message().rstrip('.')} (see 'cadpanel --help').")
+    except CadpanelError as error:
+        return _refuse(str(error))
+    except KeyboardInterrupt:
+        status = EXIT_INTERRUPTED
+    if status == EXIT_INTERRUPTED:
+        sys.stderr.write("Interrupted.\n")
+    return status if isinstance(status, int) else 0
+
+
+def _refuse(sentence: str) -> int:
+    """Say it on one line, however it was wrapped."""
+    sys.stderr.write(" ".join(sentence.split()) + "\n")
+    return EXIT_REFUSED
+
+
+def _stop(_signal: int, _frame: object) -> NoReturn:
+    """A polite kill cleans up as an interrupt does."""
+    raise SystemExit(EXIT_TERMINATED)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,106 @@
+"""The shape of the project: which way imports go, what is public, how long a file may be, what stands at the top."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from importlinter.cli import lint_imports
+
+import cadpanel
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "cadpanel"
+LONGEST_FILE = 400
+TOP_LEVEL = {"pyproject.toml", "cadpanel", "tests", "fixtures", "examples", "README.md", "LICENSE"}
+HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPython"}
+
+# What users import from cadpanel itself. A name that leaves this list breaks someone's script.
+PUBLIC: set[str] = set()
+
+
+def test_imports_go_downwards_only(capsys: pytest.CaptureFixture[str]) -> None:
+    status = lint_imports(config_filename=str(ROOT / "pyproject.toml"), no_cache=True, no_logo=True)
+    assert status == 0, capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("layer", "wrong_import", "contract"),
+    [
+        ("geometry", "cadpanel.features", "Imports go downwards only"),
+        ("reference", "cadpanel.brep", "Imports go downwards only"),
+        ("errors", "cadpanel.geometry", "Imports go downwards only"),
+        ("solver", "cadpanel.terms", "The solver stands beside the layers"),
+        ("features", "cadpanel.solver", "Only the terms and the fit call the solver"),
+        ("delivery", "OCP.gp", "Only brep imports the CAD kernel"),
+        ("fitting", "build123d", "Only brep imports the CAD kernel"),
+    ],
+)
+def test_a_wrong_import_is_caught(tmp_path: Path, layer: str, wrong_import: str, contract: str) -> None:
+    shutil.copytree(PACKAGE, tmp_path / "cadpanel", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    file = tmp_path / "cadpanel" / ("errors.py" if layer == "errors" else f"{layer}/__init__.py")
+    file.write_text(f"{file.read_text(encoding='utf-8')}\nimport {wrong_import}\n", encoding="utf-8")
+    answer = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports(no_cache=True))",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert answer.returncode == 1, answer.stderr
+    broken = [line for line in answer.stdout.splitlines() if line.endswith("BROKEN")]
+    assert any(line.startswith(contract) for line in broken), answer.stdout
+
+
+def test_importing_cadpanel_is_light() -> None:
+    answer = subprocess.run(
+        [sys.executable, "-c", "import json, sys, cadpanel; print(json.dumps(sorted(sys.modules)))"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    )
+    loaded = {name.partition(".")[0] for name in json.loads(answer.stdout)}
+    assert "cadpanel" in loaded
+    assert not loaded & HEAVY
+
+
+def test_the_public_names_are_these() -> None:
+    names = getattr(cadpanel, "__all__", [])
+    assert set(names) == PUBLIC
+    assert len(names) == len(PUBLIC)
+    assert [name for name in names if not hasattr(cadpanel, name)] == []
+
+
+def test_no_file_is_too_long_to_read() -> None:
+    lengths = {
+        str(path.relative_to(ROOT)): len(path.read_text(encoding="utf-8").splitlines())
+        for path in PACKAGE.rglob("*.py")
+    }
+    assert lengths
+    assert {name: length for name, length in lengths.items() if length > LONGEST_FILE} == {}
+
+
+def test_the_top_level_shows_only_what_it_should() -> None:
+    listing = subprocess.run(
+        # The checkout may belong to someone else than the user who runs the tests.
+        ["git", "-c", "safe.directory=*", "ls-files", "-z"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    if listing.returncode != 0:
+        pytest.skip("not a git checkout, so what belongs to the project cannot be told from what lies about")
+    names = {name.partition("/")[0] for name in listing.stdout.split("\0") if name}
+    assert {name for name in names if not name.startswith(".")} == TOP_LEVEL

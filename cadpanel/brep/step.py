@@ -1,0 +1,131 @@
+"""STEP files of panels: written straight from the exact topology, read back through the kernel.
+
+The text is written without the kernel's own translator: it keeps every digit of a double (the translator keeps 12), is
+byte for byte the same for the same panels, a third of the size, and takes a quarter of the time.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from cadpanel.brep.silence import silence_kernel
+from cadpanel.brep.step_product import Schema, step_file
+from cadpanel.brep.step_topology import UnsupportedGeometry
+from cadpanel.errors import DeliveryError
+
+Color = tuple[float, float, float]
+NamedShape = tuple[str, TopoDS_Shape, Color | None]
+
+
+def write_step(
+    path: str | os.PathLike[str], shapes: Sequence[NamedShape], *, title: str, schema: Schema = "AP242"
+) -> None:
+    """Write a flat assembly, one product a shape with its name and colour, whole or not at all.
+
+    Arguments:
+        path: the file; an existing one is replaced once the new one is complete.
+        shapes: name, a solid or an open shell that cadpanel built, sRGB colour with components in 0 to 1 or None.
+            Names must differ.
+        title: name of the assembly.
+        schema: "AP242" or "AP214".
+
+    Raises:
+        DeliveryError: if the file cannot be written, or a shape has other than plane, cone and cylinder faces.
+    """
+    target = Path(path)
+    try:
+        text = step_file(shapes, title, schema)
+    except UnsupportedGeometry as error:
+        raise DeliveryError(f"{target} cannot be written: it would hold {error}, not an exact panel.") from error
+    _write_whole(target, text)
+
+
+def _write_whole(target: Path, text: str) -> None:
+    temporary: Path | None = None
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="ascii", newline="\n", dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as file:
+            temporary = Path(file.name)
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, target)
+    except OSError as error:
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
+        raise DeliveryError(f"{target} cannot be written: {error.strerror or error}.") from error
+
+
+def _umask() -> int:
+    """The process's mask; a temporary file is created for the owner only, the delivered one is not to be."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def read_step_shapes(path: str | os.PathLike[str]) -> list[tuple[str, TopoDS_Shape]]:
+    """The products of a flat assembly with their names, in the file's order; a single part counts as one.
+
+    Raises:
+        DeliveryError: if the file is missing, not STEP, or cut short.
+    """
+    target = Path(path)
+    if not target.is_file():
+        raise DeliveryError(f"{target} cannot be read: there is no such file.")
+    silence_kernel()
+    reader = STEPCAFControl_Reader()
+    for switch in (reader.SetColorMode, reader.SetLayerMode, reader.SetPropsMode, reader.SetGDTMode, reader.SetMatMode):
+        switch(False)
+    reader.SetNameMode(True)
+    if reader.ReadFile(str(target)) != IFSelect_RetDone:
+        raise DeliveryError(f"{target} cannot be read: it is not a complete STEP file.")
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    if not reader.Transfer(document):
+        raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    free = TDF_LabelSequence()
+    tool.GetFreeShapes(free)
+    found: list[tuple[str, TopoDS_Shape]] = []
+    for label in _labels(free):
+        if XCAFDoc_ShapeTool.IsAssembly_s(label):
+            components = TDF_LabelSequence()
+            XCAFDoc_ShapeTool.GetComponents_s(label, components)
+            found += [(_component_name(part), XCAFDoc_ShapeTool.GetShape_s(part)) for part in _labels(components)]
+        else:
+            found.append((_name(label), XCAFDoc_ShapeTool.GetShape_s(label)))
+    return found
+
+
+def _labels(sequence: TDF_LabelSequence) -> list[TDF_Label]:
+    return [sequence.Value(index) for index in range(1, sequence.Length() + 1)]
+
+
+def _component_name(component: TDF_Label) -> str:
+    """The product's name, which is what the fabricator sees; the instance's may be a mere number."""
+    product = TDF_Label()
+    if XCAFDoc_ShapeTool.GetReferredShape_s(component, product):
+        return _name(product)
+    return _name(component)
+
+
+def _name(label: TDF_Label) -> str:
+    attribute = TDataStd_Name()
+    if not label.FindAttribute(TDataStd_Name.GetID_s(), attribute):
+        return ""
+    return str(attribute.Get().ToExtString())
+
+

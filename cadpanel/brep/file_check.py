@@ -1,0 +1,84 @@
+"""What can be told from a file's text before the CAD kernel sees it.
+
+The kernel reads half a file, or a number that is none, without a word and goes on with what is left; so these are
+looked for here.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from cadpanel.errors import ReferenceFileError
+
+READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242, usually .step or .stp)"
+# The first and last part of a file in which its beginning and end are looked for.
+MARGIN_BYTES = 4096
+START = b"ISO-10303-21"
+END = b"END-ISO-10303-21"
+
+# First bytes of what people hand over by mistake, and what to call it.
+OTHER_FORMATS = (
+    (re.compile(rb"\s*3D Geometry File Format"), "a Rhino 3dm file"),
+    (re.compile(rb"[^\r\n]{72}S\s{0,6}[01]"), "an IGES file"),
+    (re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology|Open CASCADE Topology)"), "an OCCT brep file"),
+    (re.compile(rb"\s*solid\b"), "an STL file"),
+    (re.compile(rb"AC10\d\d"), "a DWG drawing"),
+    (re.compile(rb"\s*0\r?\nSECTION"), "a DXF drawing"),
+    (re.compile(rb"PK\x03\x04"), "a ZIP archive"),
+    (re.compile(rb"\x1f\x8b"), "a gzip archive"),
+)
+QUOTED = re.compile(rb"'[^']*'")
+# Also powers of ten of three digits: no length, angle or weight is so large, and 1.E400 keeps the kernel busy for minutes.
+NOT_A_NUMBER = re.compile(rb"[(,]\s*([-+]?(?:nan|inf|infinity|\d+\.#\w+|\d+\.?\d*E\+?\d{3,}))\s*[,)]", re.IGNORECASE)
+INSTANCE = re.compile(rb"#(\d+)\s*=")
+
+
+def check_step_file(path: Path) -> None:
+    """Refuse a file that is missing, is no STEP file, breaks off, or holds numbers that are none.
+
+    Raises:
+        ReferenceFileError: the first of these that is found, naming the file.
+    """
+    if path.is_dir():
+        raise ReferenceFileError(f"'{path}' is a folder: give the STEP file of the reference in it.")
+    try:
+        text = path.read_bytes()
+    except FileNotFoundError:
+        raise ReferenceFileError(f"'{path}' does not exist: check the name and the folder.") from None
+    except OSError as error:
+        raise ReferenceFileError(f"'{path}' cannot be read ({error.strerror}): check its permissions.") from error
+    if not text.strip():
+        raise ReferenceFileError(f"'{path.name}' is empty: export the reference again.")
+    if START not in text[:MARGIN_BYTES]:
+        raise ReferenceFileError(f"'{path.name}' is {_format_of(text)}: {READABLE}; export the reference as STEP.")
+    if END not in text[-MARGIN_BYTES:]:
+        raise ReferenceFileError(
+            f"'{path.name}' breaks off before its end ({END.decode()} is missing): copy or export it again."
+        )
+    _check_numbers(path.name, text)
+
+
+def _format_of(text: bytes) -> str:
+    """Name the format that the file's first bytes speak for."""
+    for signature, name in OTHER_FORMATS:
+        if signature.match(text[:MARGIN_BYTES]):
+            return name
+    return "not a STEP file"
+
+
+def _check_numbers(name: str, text: bytes) -> None:
+    """Refuse NaN and infinity, which the kernel would replace by numbers of its own."""
+    if not NOT_A_NUMBER.search(text):
+        return
+    # Names may hold anything, so look again with every quoted text emptied.
+    bare = QUOTED.sub(b"''", text)
+    found = NOT_A_NUMBER.search(bare)
+    if found is None:
+        return
+    instances = INSTANCE.findall(bare[: found.start()])
+    where = f" at #{instances[-1].decode()}" if instances else ""
+    raise ReferenceFileError(
+        f"'{name}' holds a coordinate that is not a number ({found.group(1).decode()}{where}): "
+        "repair that face and export the reference again."
+    )

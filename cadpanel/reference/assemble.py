@@ -1,0 +1,48 @@
+"""From sampled faces to the reference: oriented panels and the seams between them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.reference.model import PanelReference, RawPanel, Reference
+from cadpanel.reference.orient import orient
+from cadpanel.reference.outline import find_outline
+from cadpanel.reference.seams import align, find_seams, refuse_duplicates
+
+# Ends of panels that meet may lie this far apart in the file, mm.
+SEAM_TOLERANCE = 1.0
+
+
+def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float = SEAM_TOLERANCE) -> Reference:
+    """Return the reference that a file's panels make.
+
+    The result does not depend on the order of panels, faces and edges, nor on the side of the faces' normals: panels
+    keep the file's order, everything else is found by geometry.
+
+    Args:
+        raw_panels: the panels as sampled, each with a name of its own.
+        source: the file's name, kept and used in messages.
+        seam_tolerance: how far the ends of two panels that meet may lie apart, mm.
+
+    Raises:
+        ReferenceFileError: there are no panels.
+        PanelError: one of the panels is none, lies on another one, or meets more than one at the same end.
+        SettingsError: the tolerance is no positive length.
+    """
+    if not (np.isfinite(seam_tolerance) and seam_tolerance > 0.0):
+        raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance}.")
+    if not raw_panels:
+        raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
+    panels = [_panel(raw, source) for raw in raw_panels]
+    refuse_duplicates(panels, source, seam_tolerance)
+    seams = find_seams(panels, source, seam_tolerance)
+    aligned, seams = align(panels, seams, seam_tolerance)
+    return Reference(source=source, panels=aligned, seams=seams)
+
+
+def _panel(raw: RawPanel, source: str) -> PanelReference:
+    """Return one panel's reference."""
+    return orient(raw, find_outline(raw, source), source)

@@ -1,0 +1,244 @@
+"""From a panel's faces to its outline: one closed loop of free edges, cut into four sides at its corners."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from cadpanel.errors import PanelError
+from cadpanel.reference.model import RawPanel
+from cadpanel.reference.polyline import end_tangents, unit
+from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
+
+Array = NDArray[np.float64]
+
+# Faces of one panel touch where they come within this, and within this part of the panel's size.
+TOUCH_TOLERANCE = 1.0
+TOUCH_PART = 1e-3
+# The outline has a corner where it turns by more than this in the surface, degrees.
+CORNER_ANGLE = 30.0
+CORNERS = 4
+# A face whose area is less than this part of its outline's length squared is a line.
+SLIVER = 1e-6
+# Points on each side of the outline that is handed on.
+OUTLINE_POINTS = 65
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Side:
+    """One of the outline's four sides: (q, 3) points (mm) and the surface's (q, 3) unit normals, evenly spaced."""
+
+    points: Array
+    normals: Array
+    length: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outline:
+    """A panel's outline.
+
+    Attributes:
+        sides: the four sides in walking order, each beginning where the one before ends.
+        face_signs: for each face 1 or -1, which turns its normals to the side of the first face.
+    """
+
+    sides: tuple[Side, Side, Side, Side]
+    face_signs: tuple[float, ...]
+
+
+def find_outline(panel: RawPanel, source: str) -> Outline:
+    """Return the outline of a panel, whatever the order and direction of its faces and edges.
+
+    Args:
+        panel: the panel as sampled.
+        source: the file's name, for messages.
+
+    Raises:
+        PanelError: a face has no area, the faces do not touch, or their outline is not one loop with four corners.
+    """
+    check_faces(panel, source)
+    tolerance = min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
+    edges = panel_edges(panel, tolerance)
+    free, contacts = free_edges(edges, tolerance)
+    signs = _face_signs(len(panel.faces), contacts)
+    loops, loose = _chain(free, tolerance)
+    if len(loops) != 1 or loose or len(signs) < len(panel.faces):
+        free, contacts = free_edges(split_at_vertices(edges, tolerance), tolerance)
+        signs = _face_signs(len(panel.faces), contacts)
+        loops, loose = _chain(free, tolerance)
+        _check_loops(panel, source, signs, free, loops, loose)
+    loop = [replace(edge, normals=signs[edge.face] * edge.normals) for edge in loops[0]]
+    sides = _cut_at_corners(loop, panel.name, source)
+    return Outline(sides=sides, face_signs=tuple(signs[face] for face in range(len(panel.faces))))
+
+
+def check_faces(panel: RawPanel, source: str) -> None:
+    """Refuse a panel without faces, and one with a face that has shrunk to a line or a point.
+
+    Raises:
+        PanelError: naming the face by its place.
+    """
+    if not panel.faces:
+        raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
+    for place, face in enumerate(panel.faces, start=1):
+        around = sum(float(np.linalg.norm(np.diff(edge, axis=0), axis=1).sum()) for edge in face.edges)
+        if len(face.points) == 0 or float(face.weights.sum()) <= SLIVER * around**2:
+            raise PanelError(
+                panel.name,
+                f"in '{source}', face {place} of {len(panel.faces)} has no area: delete it and export again.",
+            )
+
+
+def _size(panel: RawPanel) -> float:
+    """Diagonal of the box around a panel's samples and edges, mm."""
+    points = np.concatenate([array for face in panel.faces for array in (face.points, *face.edges)])
+    return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+def _face_signs(count: int, contacts: Sequence[Contact]) -> dict[int, float]:
+    """Return the sign that turns each face's normals to the side of face 0, for the faces connected with it."""
+    neighbours: list[list[tuple[int, float]]] = [[] for _ in range(count)]
+    for contact in contacts:
+        (first, second), sign = contact.faces, 1.0 if contact.agree else -1.0
+        neighbours[first].append((second, sign))
+        neighbours[second].append((first, sign))
+    signs, front = {0: 1.0}, [0]
+    while front:
+        face = front.pop()
+        for other, sign in neighbours[face]:
+            if other not in signs:
+                signs[other] = sign * signs[face]
+                front.append(other)
+    return signs
+
+
+def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], list[Array]]:
+    """Chain edges into closed loops.
+
+    Returns:
+        The loops, each edge directed along its loop, and the points (3,) in which other than two edges meet; where there
+        are such points, no loops.
+    """
+    if not edges:
+        return [], []
+    ends = np.array([end for edge in edges for end in (edge.points[0], edge.points[-1])])
+    near = np.linalg.norm(ends[:, None] - ends[None], axis=-1) <= tolerance
+    nodes = near.argmax(axis=1).reshape(-1, 2).tolist()
+    at_node: dict[int, list[int]] = {}
+    for index, pair in enumerate(nodes):
+        for node in pair:
+            at_node.setdefault(node, []).append(index)
+    loose = [ends[node] for node, indices in at_node.items() if len(indices) != 2]
+    if loose:
+        return [], loose
+    loops, left = [], set(range(len(edges)))
+    while left:
+        index = min(left)
+        start, node = nodes[index]
+        loop = [edges[index]]
+        left.remove(index)
+        while node != start:
+            index = next(other for other in at_node[node] if other in left)
+            left.remove(index)
+            forwards = nodes[index][0] == node
+            loop.append(edges[index] if forwards else edges[index].reverse())
+            node = nodes[index][1] if forwards else nodes[index][0]
+        loops.append(loop)
+    return loops, []
+
+
+def _check_loops(
+    panel: RawPanel,
+    source: str,
+    signs: dict[int, float],
+    free: Sequence[Edge],
+    loops: Sequence[Sequence[Edge]],
+    loose: Sequence[Array],
+) -> None:
+    """Say why a panel's free edges do not form one closed outline, where they do not."""
+    count = len(panel.faces)
+    if len(signs) < count:
+        raise PanelError(
+            panel.name,
+            f"in '{source}', only {len(signs)} of its {count} faces touch each other along an edge, the nearest other one is "
+            f"{_gap(panel, signs):.3g} mm away: join the faces, or export them as panels of their own.",
+        )
+    if not free:
+        raise PanelError(
+            panel.name,
+            f"in '{source}', it is a closed surface without an outline: export an open sheet with four sides.",
+        )
+    if loose:
+        x, y, z = loose[0]
+        raise PanelError(
+            panel.name,
+            f"in '{source}', its outline is not closed or branches at ({x:.1f}, {y:.1f}, {z:.1f}): "
+            "join its faces along whole edges and export again.",
+        )
+    if len(loops) > 1:
+        raise PanelError(
+            panel.name,
+            f"in '{source}', its outline has {len(loops)} loops where a panel has one: close its holes and export again.",
+        )
+
+
+def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
+    """Least distance between the edge points of the connected faces and those of the others, mm."""
+    inside, outside = (
+        [edge for face, samples in enumerate(panel.faces) if (face in connected) == side for edge in samples.edges]
+        for side in (True, False)
+    )
+    if not inside or not outside:
+        return float("inf")
+    distances, _ = cKDTree(np.concatenate(inside)).query(np.concatenate(outside))
+    return float(distances.min())
+
+
+def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, Side, Side, Side]:
+    """Cut a closed loop of edges into its four sides."""
+    tangents = [end_tangents(edge.points) for edge in loop]
+    corners = [
+        index
+        for index, edge in enumerate(loop)
+        if _turn(tangents[index - 1][1], tangents[index][0], loop[index - 1].normals[-1] + edge.normals[0])
+        > CORNER_ANGLE
+    ]
+    if len(corners) != CORNERS:
+        places = ", ".join(
+            "({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners[: CORNERS + 2]
+        )
+        raise PanelError(
+            name,
+            f"in '{source}', its outline has {len(corners)} corners{f' (at {places})' if places else ''} where a panel has "
+            f"{CORNERS}: trim it to two ends and two long edges.",
+        )
+    turned = [*loop[corners[0] :], *loop[: corners[0]]]
+    cuts = [corner - corners[0] for corner in corners] + [len(loop)]
+    first, second, third, fourth = (_side(turned[cuts[k] : cuts[k + 1]]) for k in range(CORNERS))
+    return first, second, third, fourth
+
+
+def _turn(arriving: Array, leaving: Array, normal: Array) -> float:
+    """Angle between two unit tangents (3,) seen along the surface's normal, degrees.
+
+    A sharp fold, where the outline runs over the edge between two faces, turns about the edge and not about the normal:
+    it is no corner.
+    """
+    normal = unit(normal)
+    flat = [unit(tangent - (tangent @ normal) * normal) for tangent in (arriving, leaving)]
+    return float(np.degrees(np.arccos(np.clip(flat[0] @ flat[1], -1.0, 1.0))))
+
+
+def _side(edges: Sequence[Edge]) -> Side:
+    """Join consecutive edges into one evenly spaced polyline."""
+    starts = np.concatenate([[0.0], np.cumsum([edge.length for edge in edges])])
+    positions = np.linspace(0.0, starts[-1], OUTLINE_POINTS)
+    owner = np.clip(np.searchsorted(starts, positions, side="right") - 1, 0, len(edges) - 1)
+    values = [edge.at(positions[owner == index] - starts[index]) for index, edge in enumerate(edges)]
+    points = np.concatenate([points for points, _ in values])
+    normals = unit(np.concatenate([normals for _, normals in values]))
+    return Side(points=points, normals=normals, length=float(starts[-1]))

@@ -1,0 +1,151 @@
+"""Which edges of a panel's faces lie inside the panel, because another face begins there, and which are free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.reference.model import RawPanel
+from cadpanel.reference.polyline import STENCIL, arc_length, interpolate
+
+Array = NDArray[np.float64]
+
+# Two edges coincide when they do at this many evenly spread points.
+PROBES = 9
+# Points of a piece that is cut out of an edge.
+PIECE_POINTS = 33
+# Neighbouring points closer than this part of the edge's length count as one.
+SAME_POINT = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """One edge of one face.
+
+    Attributes:
+        face: index of the face in its panel.
+        points: (q, 3) in order, no two alike, mm.
+        normals: (q, 3) the face's unit normals there.
+        lengths: (q,) arc length from the first point, mm.
+    """
+
+    face: int
+    points: Array
+    normals: Array
+    lengths: Array
+
+    @property
+    def length(self) -> float:
+        """Length from end to end, mm."""
+        return float(self.lengths[-1])
+
+    def at(self, lengths: Array) -> tuple[Array, Array]:
+        """Return points and (not quite unit) normals, each (k, 3), at the given arc lengths."""
+        values = interpolate(self.lengths, np.hstack([self.points, self.normals]), lengths)
+        return values[:, :3], values[:, 3:]
+
+    def reverse(self) -> Edge:
+        """Return the edge walked the other way."""
+        return Edge(self.face, self.points[::-1], self.normals[::-1], self.lengths[-1] - self.lengths[::-1])
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Two faces that share an edge; `agree` tells whether their normals there lie on the same side."""
+
+    faces: tuple[int, int]
+    agree: bool
+
+
+def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
+    """Return the edges of all faces; those no longer than the tolerance (mm) are points and are left out."""
+    edges = []
+    for face, samples in enumerate(panel.faces):
+        for points, normals in zip(samples.edges, samples.edge_normals, strict=True):
+            lengths = arc_length(points)
+            keep = np.concatenate([[True], np.diff(lengths) > SAME_POINT * lengths[-1]])
+            if lengths[-1] > tolerance and keep.sum() >= STENCIL:
+                edges.append(Edge(face, points[keep], normals[keep], lengths[keep]))
+    return edges
+
+
+def free_edges(edges: Sequence[Edge], tolerance: float) -> tuple[list[Edge], list[Contact]]:
+    """Separate the edges that no other face shares, from end to end, from those that one does.
+
+    Args:
+        edges: all edges of one panel, in any order and direction.
+        tolerance: how far shared edges may lie apart, mm.
+
+    Returns:
+        The free edges, and one contact for each pair of edges that coincide.
+    """
+    if not edges:
+        return [], []
+    faces = np.array([edge.face for edge in edges])
+    starts = np.array([edge.points[0] for edge in edges])
+    stops = np.array([edge.points[-1] for edge in edges])
+    direct = _near(starts, starts, tolerance) & _near(stops, stops, tolerance)
+    reverse = _near(starts, stops, tolerance) & _near(stops, starts, tolerance)
+    candidates = np.argwhere(np.triu((direct | reverse) & (faces[:, None] != faces[None, :]), 1)).tolist()
+    contacts, shared = [], set()
+    for first, second in candidates:
+        agree = _coincide(edges[first], edges[second], tolerance)
+        if agree is not None:
+            contacts.append(Contact((edges[first].face, edges[second].face), agree))
+            shared |= {first, second}
+    return [edge for index, edge in enumerate(edges) if index not in shared], contacts
+
+
+def split_at_vertices(edges: Sequence[Edge], tolerance: float) -> list[Edge]:
+    """Cut every edge where an end of another one lies on it (a T-junction), so that shared pieces match in pairs."""
+    vertices = np.array([end for edge in edges for end in (edge.points[0], edge.points[-1])])
+    pieces = []
+    for edge in edges:
+        cuts = _positions_on(edge, vertices, tolerance)
+        borders = [0.0, *cuts, edge.length]
+        for start, stop in zip(borders[:-1], borders[1:], strict=True):
+            points, normals = edge.at(np.linspace(start, stop, PIECE_POINTS))
+            pieces.append(Edge(edge.face, points, normals, arc_length(points)))
+    return pieces
+
+
+def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
+    """Tell for every pair of (m, 3) and (k, 3) points whether they lie within the tolerance: (m, k)."""
+    near: NDArray[np.bool_] = np.linalg.norm(first[:, None] - second[None], axis=-1) <= tolerance
+    return near
+
+
+def _coincide(first: Edge, second: Edge, tolerance: float) -> bool | None:
+    """Return None where two edges do not coincide, else whether their normals lie on the same side."""
+    parts = np.linspace(0.0, 1.0, PROBES)
+    points, normals = first.at(parts * first.length)
+    other_points, other_normals = second.at(parts * second.length)
+    for order in (slice(None), slice(None, None, -1)):
+        if (np.linalg.norm(points - other_points[order], axis=1) <= tolerance).all():
+            return bool(np.sum(normals * other_normals[order]) > 0.0)
+    return None
+
+
+def _positions_on(edge: Edge, vertices: Array, tolerance: float) -> list[float]:
+    """Return the rising arc lengths at which vertices lie on the inside of an edge, each place once."""
+    # Half a tolerance is finer than anything that is told apart here, and the edge between its points is smooth.
+    count = max(len(edge.points), PIECE_POINTS) * 2
+    lengths = np.linspace(0.0, edge.length, count)
+    points, _ = edge.at(lengths)
+    steps = np.diff(points, axis=0)
+    squares = np.maximum(np.einsum("kd,kd->k", steps, steps), np.finfo(float).tiny)
+    offsets = vertices[:, None] - points[None, :-1]
+    along = np.clip(np.einsum("vkd,kd->vk", offsets, steps) / squares, 0.0, 1.0)
+    distances = np.linalg.norm(offsets - along[..., None] * steps, axis=-1)
+    nearest = distances.argmin(axis=1)
+    rows = np.arange(len(vertices))
+    positions = lengths[nearest] + along[rows, nearest] * (lengths[1] - lengths[0])
+    on_edge = (distances[rows, nearest] <= tolerance) & (positions > tolerance) & (positions < edge.length - tolerance)
+    cuts: list[float] = []
+    for position in sorted(positions[on_edge].tolist()):
+        if not cuts or position - cuts[-1] > tolerance:
+            cuts.append(position)
+    return cuts

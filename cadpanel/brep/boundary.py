@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
+
+from cadpanel.reference.polyline import cross, norm, unit
 
 Array = NDArray[np.float64]
 
@@ -38,25 +41,36 @@ class Edge:
     parameters: Array
 
 
+class _Samples(NamedTuple):
+    """Points and normals of an edge as in `Edge`, and (q,) whether the surface defines each normal."""
+
+    points: Array
+    normals: Array
+    defined: NDArray[np.bool_]
+    parameters: Array
+
+
 def evaluate(surface: BRepAdaptor_Surface, parameters: Array) -> tuple[Array, Array, Array]:
-    """Return the points and the two first derivatives, each (m, 3) in mm, at the (m, 2) parameters."""
+    """Return the points and the two first derivatives, each (..., 3) in mm, at the (..., 2) parameters."""
     point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-    rows = []
-    for u, v in parameters.tolist():
+    numbers: list[float] = []
+    for u, v in parameters.reshape(-1, 2).tolist():
         surface.D1(u, v, point, along_u, along_v)
-        rows.append(point.Coord() + along_u.Coord() + along_v.Coord())
-    values = np.array(rows, dtype=np.float64).reshape(-1, 3, 3)
-    return values[:, 0], values[:, 1], values[:, 2]
+        numbers += point.Coord()
+        numbers += along_u.Coord()
+        numbers += along_v.Coord()
+    values = np.array(numbers, dtype=np.float64).reshape(*parameters.shape[:-1], 3, 3)
+    return values[..., 0, :], values[..., 1, :], values[..., 2, :]
 
 
 def unit_normals(along_u: Array, along_v: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return (m, 3) unit normals along Su x Sv and, (m,), whether each is well defined; the others are zero."""
-    normals = np.cross(along_u, along_v)
-    sizes = np.linalg.norm(normals, axis=1)
-    lengths_u, lengths_v = np.linalg.norm(along_u, axis=1), np.linalg.norm(along_v, axis=1)
+    """Return (..., 3) unit normals along Su x Sv and, (...,), whether each is well defined; the others are zero."""
+    normals = cross(along_u, along_v)
+    sizes = norm(normals)
+    lengths_u, lengths_v = norm(along_u), norm(along_v)
     scale = np.maximum(lengths_u * lengths_v, lengths_u.mean() * lengths_v.mean())
     defined = sizes > DEGENERATE * scale
-    return np.where(defined[:, None], normals, 0.0) / np.where(defined, sizes, 1.0)[:, None], defined
+    return np.where(defined[..., None], normals, 0.0) / np.where(defined, sizes, 1.0)[..., None], defined
 
 
 def sample_edges(face: TopoDS_Face, surface: BRepAdaptor_Surface, middle: Array, side: float) -> tuple[Edge, ...]:
@@ -68,34 +82,66 @@ def sample_edges(face: TopoDS_Face, surface: BRepAdaptor_Surface, middle: Array,
         middle: (2,) parameters of a point inside, towards which degenerate normals are looked for.
         side: -1 where the face is reversed against its surface, else 1.
     """
-    edges = []
+    curves = []
     explorer = TopExp_Explorer(face, TopAbs_EDGE)
     while explorer.More():
         edge = TopoDS.Edge_s(explorer.Current())
         if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
-            edges.append(_sample_edge(BRepAdaptor_Curve2d(edge, face), surface, middle, side))
+            curves.append(BRepAdaptor_Curve2d(edge, face))
         explorer.Next()
+    if not curves:
+        return ()
+    positions = np.array([_even_positions(curve) for curve in curves])
+    parameters = np.array([_curve_values(curve, places) for curve, places in zip(curves, positions, strict=True)])
+    points, along_u, along_v = evaluate(surface, parameters)
+    normals, defined = unit_normals(along_u, along_v)
+    faulty = np.logical_or(*_faults(points))
+    edges = []
+    for index, curve in enumerate(curves):
+        samples = _Samples(points[index], normals[index], defined[index], parameters[index])
+        edges.append(_edge(_refined(curve, surface) if faulty[index] else samples, surface, middle, side))
     return tuple(edges)
 
 
-def _sample_edge(curve: BRepAdaptor_Curve2d, surface: BRepAdaptor_Surface, middle: Array, side: float) -> Edge:
-    """Sample one edge at even spacing, the finer the more it turns."""
-    positions = np.linspace(curve.FirstParameter(), curve.LastParameter(), FEWEST_POINTS)
+def _edge(samples: _Samples, surface: BRepAdaptor_Surface, middle: Array, side: float) -> Edge:
+    """Make an edge of its samples, with the normals that the surface does not define taken from next to them."""
+    normals = samples.normals
+    if not samples.defined.all():
+        _, along_u, along_v = evaluate(surface, samples.parameters + NUDGE * (middle - samples.parameters))
+        normals = np.where(samples.defined[:, None], normals, unit(cross(along_u, along_v)))
+    return Edge(samples.points, side * normals, samples.parameters)
+
+
+def _refined(curve: BRepAdaptor_Curve2d, surface: BRepAdaptor_Surface) -> _Samples:
+    """Sample one edge anew at even spacing, the finer the more it turns."""
+    positions = _even_positions(curve)
     for _ in range(PASSES):
         parameters = _curve_values(curve, positions)
         points, along_u, along_v = evaluate(surface, parameters)
-        segments = np.diff(points, axis=0)
-        lengths = np.linalg.norm(segments, axis=1)
-        too_coarse = _largest_turn(segments, lengths) > LARGEST_TURN
-        if not too_coarse and lengths.max() <= SPACING_RATIO * lengths.min():
+        coarse, uneven = _faults(points)
+        if not (coarse or uneven):
             break
-        distances = np.concatenate([[0.0], np.cumsum(lengths)])
-        count = 2 * len(positions) - 1 if too_coarse else len(positions)
+        distances = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
+        count = 2 * len(positions) - 1 if coarse else len(positions)
         positions = np.interp(np.linspace(0.0, distances[-1], count), distances, positions)
     normals, defined = unit_normals(along_u, along_v)
-    if not defined.all():
-        normals[~defined] = _nudged_normals(surface, parameters[~defined], middle)
-    return Edge(points, side * normals, parameters)
+    return _Samples(points, normals, defined, parameters)
+
+
+def _faults(points: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tell for (..., q, 3) polylines whether each turns too much between two segments, and is unevenly spaced."""
+    segments = np.diff(points, axis=-2)
+    lengths = norm(segments)
+    products = lengths[..., 1:] * lengths[..., :-1]
+    # A segment without length turns nowhere, and 0 < 0 below says so.
+    cosines = np.einsum("...d,...d->...", segments[..., 1:, :], segments[..., :-1, :])
+    coarse = (cosines < np.cos(np.radians(LARGEST_TURN)) * products).any(axis=-1)
+    return coarse, lengths.max(axis=-1) > SPACING_RATIO * lengths.min(axis=-1)
+
+
+def _even_positions(curve: BRepAdaptor_Curve2d) -> Array:
+    """Return positions along a curve, evenly spaced in its own parameter."""
+    return np.linspace(curve.FirstParameter(), curve.LastParameter(), FEWEST_POINTS)
 
 
 def _curve_values(curve: BRepAdaptor_Curve2d, positions: Array) -> Array:
@@ -106,18 +152,3 @@ def _curve_values(curve: BRepAdaptor_Curve2d, positions: Array) -> Array:
         straight: Array = origin + positions[:, None] * direction
         return straight
     return np.array([curve.Value(position).Coord() for position in positions.tolist()], dtype=np.float64)
-
-
-def _largest_turn(segments: Array, lengths: Array) -> float:
-    """Return the largest angle between two consecutive segments, degrees; segments without length do not turn."""
-    products = lengths[1:] * lengths[:-1]
-    cosines = np.einsum("ij,ij->i", segments[1:], segments[:-1]) / np.where(products > 0.0, products, 1.0)
-    return float(np.degrees(np.arccos(np.clip(np.where(products > 0.0, cosines, 1.0), -1.0, 1.0))).max())
-
-
-def _nudged_normals(surface: BRepAdaptor_Surface, parameters: Array, middle: Array) -> Array:
-    """Return the (m, 3) unit normals a little towards the middle of the face, where they are defined again."""
-    _, along_u, along_v = evaluate(surface, parameters + NUDGE * (middle - parameters))
-    normals = np.cross(along_u, along_v)
-    sizes = np.linalg.norm(normals, axis=1, keepdims=True)
-    return normals / np.where(sizes > 0.0, sizes, 1.0)

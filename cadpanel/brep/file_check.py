@@ -29,7 +29,7 @@ OTHER_FORMATS = (
     (re.compile(rb"\x1f\x8b"), "a gzip archive"),
 )
 QUOTED = re.compile(rb"'[^']*'")
-# Also powers of ten of three digits: no length, angle or weight is so large, and 1.E400 keeps the kernel busy for minutes.
+# Also powers of ten of three digits: no length is so large, and 1.E400 keeps the kernel busy for minutes.
 NOT_A_NUMBER = re.compile(rb"[(,]\s*([-+]?(?:nan|inf|infinity|\d+\.#\w+|\d+\.?\d*E\+?\d{3,}))\s*[,)]", re.IGNORECASE)
 INSTANCE = re.compile(rb"#(\d+)\s*=")
 

@@ -84,9 +84,7 @@ def _transfer(path: Path, document: TDocStd_Document) -> None:
     ):
         leave_out(False)
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
-        raise ReferenceFileError(
-            f"'{path.name}' is damaged: the CAD kernel cannot read it; export the reference again."
-        )
+        raise ReferenceFileError(f"'{path.name}' is damaged: the CAD kernel cannot read it; export it again.")
     syntax = reader.Reader().StepModel().GlobalCheck(True)
     if syntax.HasFailed():
         raise ReferenceFileError(f"'{path.name}' is damaged ({_first_fail(syntax)}): export the reference again.")

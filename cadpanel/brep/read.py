@@ -51,7 +51,8 @@ def read_raw_panels(path: str | Path) -> tuple[RawPanel, ...]:
     panels = tuple(_sample(name, product, path.name) for name, product in zip(names, products, strict=True))
     if not any(panel.faces for panel in panels):
         raise ReferenceFileError(
-            f"'{path.name}' holds no faces, only curves, points or nothing: export the faces of the skin, one product a panel."
+            f"'{path.name}' holds no faces, only curves, points or nothing: "
+            "export the faces of the skin, one product a panel."
         )
     for panel in panels:
         if not panel.faces:

@@ -22,13 +22,14 @@ from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.boundary import Edge, evaluate, sample_edges, unit_normals
 from cadpanel.reference.model import FaceSamples
+from cadpanel.reference.polyline import cross, norm
 
 Array = NDArray[np.float64]
 
 SAMPLES_PER_PANEL = 125
 FEWEST_SAMPLES_PER_FACE = 9
 # Grid lines each way on which a face is measured before it is sampled.
-MEASURING_GRID = 6
+MEASURING_GRID = 5
 # How closely a boundary must follow the border of the parameter range for the face to count as untrimmed,
 # as a part of that range.
 BORDER = 1e-6
@@ -90,9 +91,9 @@ def _measure(face: TopoDS_Face) -> _MeasuredFace:
     _, along_u, along_v = evaluate(surface, _grid(bounds, middles, middles))
     steps = (bounds[:, 1] - bounds[:, 0]) / MEASURING_GRID
     shape = (MEASURING_GRID, MEASURING_GRID)
-    step_u = steps[0] * np.linalg.norm(along_u, axis=1).reshape(shape).mean(axis=1)
-    step_v = steps[1] * np.linalg.norm(along_v, axis=1).reshape(shape).mean(axis=0)
-    full_area = float(np.linalg.norm(np.cross(along_u, along_v), axis=1).sum() * steps.prod())
+    step_u = steps[0] * norm(along_u).reshape(shape).mean(axis=1)
+    step_v = steps[1] * norm(along_v).reshape(shape).mean(axis=0)
+    full_area = float(norm(cross(along_u, along_v)).sum() * steps.prod())
     trimmed = _is_trimmed(edges, bounds)
     return _MeasuredFace(
         face=face,
@@ -139,7 +140,7 @@ def _sample(face: _MeasuredFace, wanted: float) -> FaceSamples:
     parameters = _grid(face.bounds, middles_u, middles_v)
     points, along_u, along_v = evaluate(face.surface, parameters)
     cells = np.outer(widths_u, widths_v).ravel() * (face.bounds[:, 1] - face.bounds[:, 0]).prod()
-    weights = cells * np.linalg.norm(np.cross(along_u, along_v), axis=1)
+    weights = cells * norm(cross(along_u, along_v))
     normals, keep = unit_normals(along_u, along_v)
     if face.trimmed:
         keep &= _inside(face, parameters)
@@ -162,7 +163,7 @@ def _grid(bounds: Array, parts_u: Array, parts_v: Array) -> Array:
 
 
 def _even_cells(reach: Array, count: int) -> tuple[Array, Array]:
-    """Cut a parameter range into cells of equal length on the surface; return their middles and widths as parts of it."""
+    """Cut a parameter range into cells equally long on the surface; return their middles and widths as parts of it."""
     if reach[-1] > 0.0:
         borders = np.interp(np.linspace(0.0, reach[-1], count + 1), reach, np.linspace(0.0, 1.0, len(reach)))
     else:

@@ -1,4 +1,4 @@
-"""From an outline to a panel's reference: which sides are the ends, where outside is, and whether there is a fold at all.
+"""From an outline to a panel's reference: which sides are the ends, which way is out, and whether there is a fold.
 
 A panel is bent sheet: walking across the fold the normals turn, walking along it they hardly do. On a sphere or a
 saddle they turn both ways.
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cadpanel.errors import PanelError
 from cadpanel.reference.model import PanelReference, RawPanel
 from cadpanel.reference.outline import Outline, Side
-from cadpanel.reference.polyline import unit
+from cadpanel.reference.polyline import norm, unit
 
 Array = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def _bend(side: Side) -> float:
     Turning sideways (the twist of a flange) does not count.
     """
     steps = np.diff(side.normals, axis=0)
-    sizes = np.linalg.norm(steps, axis=1)
+    sizes = norm(steps)
     angles = 2.0 * np.arcsin(np.clip(0.5 * sizes, 0.0, 1.0))
     forwards = np.einsum("kd,kd->k", unit(steps), unit(np.diff(side.points, axis=0)))
     return float(np.sum(angles * forwards))
@@ -123,6 +123,6 @@ def _check_fold(name: str, source: str, across: float, ends: tuple[Side, Side], 
     if across < LEAST_FOLD or along / across * np.sqrt(width / length) > MOST_DOUBLE_CURVATURE:
         raise PanelError(
             name,
-            f"in '{source}', it curves both ways like a sphere or a saddle (its normals turn by {across:.0f} degrees across "
-            f"the fold and by {along:.0f} along it), which flat sheet cannot follow: divide it into smaller panels.",
+            f"in '{source}', it curves both ways like a sphere or a saddle (its normals turn by {across:.0f} degrees "
+            f"across the fold and by {along:.0f} along it), which flat sheet cannot follow: divide it further.",
         )

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.errors import PanelError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import end_tangents, unit
+from cadpanel.reference.polyline import arc_length, end_tangents, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
@@ -22,6 +22,8 @@ TOUCH_PART = 1e-3
 # The outline has a corner where it turns by more than this in the surface, degrees.
 CORNER_ANGLE = 30.0
 CORNERS = 4
+# Corners that a message gives the place of.
+MOST_NAMED = 6
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6
 # Points on each side of the outline that is handed on.
@@ -85,7 +87,7 @@ def check_faces(panel: RawPanel, source: str) -> None:
     if not panel.faces:
         raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
     for place, face in enumerate(panel.faces, start=1):
-        around = sum(float(np.linalg.norm(np.diff(edge, axis=0), axis=1).sum()) for edge in face.edges)
+        around = sum(float(arc_length(edge)[-1]) for edge in face.edges)
         if len(face.points) == 0 or float(face.weights.sum()) <= SLIVER * around**2:
             raise PanelError(
                 panel.name,
@@ -120,13 +122,13 @@ def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], l
     """Chain edges into closed loops.
 
     Returns:
-        The loops, each edge directed along its loop, and the points (3,) in which other than two edges meet; where there
-        are such points, no loops.
+        The loops, each edge directed along its loop, and the points (3,) in which other than two edges meet;
+        where there are such points, no loops.
     """
     if not edges:
         return [], []
     ends = np.array([end for edge in edges for end in (edge.points[0], edge.points[-1])])
-    near = np.linalg.norm(ends[:, None] - ends[None], axis=-1) <= tolerance
+    near = norm(ends[:, None] - ends[None]) <= tolerance
     nodes = near.argmax(axis=1).reshape(-1, 2).tolist()
     at_node: dict[int, list[int]] = {}
     for index, pair in enumerate(nodes):
@@ -164,13 +166,13 @@ def _check_loops(
     if len(signs) < count:
         raise PanelError(
             panel.name,
-            f"in '{source}', only {len(signs)} of its {count} faces touch each other along an edge, the nearest other one is "
-            f"{_gap(panel, signs):.3g} mm away: join the faces, or export them as panels of their own.",
+            f"in '{source}', only {len(signs)} of its {count} faces touch each other along an edge, the nearest other "
+            f"one is {_gap(panel, signs):.3g} mm away: join the faces, or export them as panels of their own.",
         )
     if not free:
         raise PanelError(
             panel.name,
-            f"in '{source}', it is a closed surface without an outline: export an open sheet with four sides.",
+            f"in '{source}', it is a closed surface without an outline: export an open sheet of four sides.",
         )
     if loose:
         x, y, z = loose[0]
@@ -182,7 +184,7 @@ def _check_loops(
     if len(loops) > 1:
         raise PanelError(
             panel.name,
-            f"in '{source}', its outline has {len(loops)} loops where a panel has one: close its holes and export again.",
+            f"in '{source}', its outline has {len(loops)} loops where a panel has one: close its holes, export again.",
         )
 
 
@@ -195,26 +197,18 @@ def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
     if not inside or not outside:
         return float("inf")
     distances, _ = cKDTree(np.concatenate(inside)).query(np.concatenate(outside))
-    return float(distances.min())
+    return float(np.min(distances))
 
 
 def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, Side, Side, Side]:
     """Cut a closed loop of edges into its four sides."""
-    tangents = [end_tangents(edge.points) for edge in loop]
-    corners = [
-        index
-        for index, edge in enumerate(loop)
-        if _turn(tangents[index - 1][1], tangents[index][0], loop[index - 1].normals[-1] + edge.normals[0])
-        > CORNER_ANGLE
-    ]
+    corners = np.flatnonzero(_turns(loop) > CORNER_ANGLE).tolist()
     if len(corners) != CORNERS:
-        places = ", ".join(
-            "({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners[: CORNERS + 2]
-        )
+        places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners[:MOST_NAMED])
         raise PanelError(
             name,
-            f"in '{source}', its outline has {len(corners)} corners{f' (at {places})' if places else ''} where a panel has "
-            f"{CORNERS}: trim it to two ends and two long edges.",
+            f"in '{source}', its outline has {len(corners)} corners{f' (at {places})' if places else ''} "
+            f"where a panel has {CORNERS}: trim it to two ends and two long edges.",
         )
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]
@@ -222,23 +216,31 @@ def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side,
     return first, second, third, fourth
 
 
-def _turn(arriving: Array, leaving: Array, normal: Array) -> float:
-    """Angle between two unit tangents (3,) seen along the surface's normal, degrees.
+def _turns(loop: Sequence[Edge]) -> Array:
+    """Angle (k,) by which the outline turns at the start of each of its k edges, seen along the normal, degrees.
 
-    A sharp fold, where the outline runs over the edge between two faces, turns about the edge and not about the normal:
-    it is no corner.
+    A sharp fold, where the outline runs over the edge between two faces, turns about that edge and not about the
+    normal: it is no corner.
     """
-    normal = unit(normal)
-    flat = [unit(tangent - (tangent @ normal) * normal) for tangent in (arriving, leaving)]
-    return float(np.degrees(np.arccos(np.clip(flat[0] @ flat[1], -1.0, 1.0))))
+    leaving = end_tangents(np.array([edge.points[:3] for edge in loop]))
+    arriving = np.roll(-end_tangents(np.array([edge.points[:-4:-1] for edge in loop])), 1, axis=0)
+    normals = np.array([loop[index - 1].normals[-1] + edge.normals[0] for index, edge in enumerate(loop)])
+    normals = unit(normals)[:, None]
+    tangents = np.stack([arriving, leaving], axis=1)
+    flat = unit(tangents - np.sum(tangents * normals, axis=-1, keepdims=True) * normals)
+    turns: Array = np.degrees(np.arccos(np.clip(np.sum(flat[:, 0] * flat[:, 1], axis=-1), -1.0, 1.0)))
+    return turns
 
 
 def _side(edges: Sequence[Edge]) -> Side:
     """Join consecutive edges into one evenly spaced polyline."""
     starts = np.concatenate([[0.0], np.cumsum([edge.length for edge in edges])])
     positions = np.linspace(0.0, starts[-1], OUTLINE_POINTS)
-    owner = np.clip(np.searchsorted(starts, positions, side="right") - 1, 0, len(edges) - 1)
-    values = [edge.at(positions[owner == index] - starts[index]) for index, edge in enumerate(edges)]
+    borders = np.searchsorted(positions, starts[1:-1]).tolist()
+    values = [
+        edge.at(part - start)
+        for edge, part, start in zip(edges, np.split(positions, borders), starts[:-1].tolist(), strict=True)
+    ]
     points = np.concatenate([points for points, _ in values])
     normals = unit(np.concatenate([normals for _, normals in values]))
     return Side(points=points, normals=normals, length=float(starts[-1]))

@@ -11,10 +11,29 @@ Array = NDArray[np.float64]
 STENCIL = 4
 
 
+def norm(vectors: Array) -> Array:
+    """Return the lengths (...,) of (..., 3) vectors; for many short arrays quicker than numpy.linalg.norm."""
+    lengths: Array = np.sqrt(np.einsum("...d,...d->...", vectors, vectors))
+    return lengths
+
+
+def cross(first: Array, second: Array) -> Array:
+    """Return the cross products (..., 3); for many short arrays quicker than numpy.cross."""
+    one, other = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+    return np.stack(
+        [
+            one[1] * other[2] - one[2] * other[1],
+            one[2] * other[0] - one[0] * other[2],
+            one[0] * other[1] - one[1] * other[0],
+        ],
+        axis=-1,
+    )
+
+
 def arc_length(points: Array) -> Array:
-    """Return the (q,) lengths from the first point to each of the (q, 3) points along the polyline."""
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    lengths: Array = np.concatenate([[0.0], np.cumsum(steps)])
+    """Return the (..., q) lengths from the first point to each of the (..., q, 3) points along the polyline."""
+    lengths = np.zeros(points.shape[:-1])
+    np.cumsum(norm(np.diff(points, axis=-2)), axis=-1, out=lengths[..., 1:])
     return lengths
 
 
@@ -29,36 +48,35 @@ def interpolate(lengths: Array, values: Array, positions: Array) -> Array:
         values: (q, d) values there.
         positions: (k,) where to evaluate, within the range of `lengths`.
     """
-    first = np.clip(np.searchsorted(lengths, positions, side="right") - 2, 0, len(lengths) - STENCIL)
-    stencil = first[:, None] + np.arange(STENCIL)
-    knots = lengths[stencil]
-    basis = np.ones_like(knots)
-    for own in range(STENCIL):
-        for other in range(STENCIL):
-            if other != own:
-                basis[:, own] *= (positions - knots[:, other]) / (knots[:, own] - knots[:, other])
-    result: Array = np.einsum("ks,ksd->kd", basis, values[stencil])
+    first = np.searchsorted(lengths, positions, side="right") - 2
+    np.clip(first, 0, len(lengths) - STENCIL, out=first)
+    stencil = first + np.arange(STENCIL)[:, None]
+    a, b, c, d = lengths[stencil]
+    to_a, to_b, to_c, to_d = positions - a, positions - b, positions - c, positions - d
+    basis = np.array(
+        [
+            to_b * to_c * to_d / ((a - b) * (a - c) * (a - d)),
+            to_a * to_c * to_d / ((b - a) * (b - c) * (b - d)),
+            to_a * to_b * to_d / ((c - a) * (c - b) * (c - d)),
+            to_a * to_b * to_c / ((d - a) * (d - b) * (d - c)),
+        ]
+    )
+    result: Array = np.einsum("sk,skd->kd", basis, values[stencil])
     return result
 
 
 def unit(vectors: Array) -> Array:
     """Return the (..., 3) vectors at length 1; those without length stay zero."""
-    sizes = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    sizes = norm(vectors)[..., None]
     scaled: Array = vectors / np.where(sizes > 0.0, sizes, 1.0)
     return scaled
 
 
-def end_tangents(points: Array) -> tuple[Array, Array]:
-    """Return the unit tangents (3,) of a curve at its first and last point, from the parabola through three points."""
-    return unit(_parabola_slope(points[:3])), unit(-_parabola_slope(points[:-4:-1]))
-
-
-def _parabola_slope(points: Array) -> Array:
-    """Return the slope (3,) at the first of three points of the parabola through them."""
-    first, second = points[1] - points[0], points[2] - points[0]
-    near, far = np.linalg.norm(first), np.linalg.norm(second)
-    slope: Array = first * (far / near) - second * (near / far)
-    return slope
+def end_tangents(starts: Array) -> Array:
+    """Return the unit tangents (..., 3) at the first of (..., 3, 3) points, from the parabola through the three."""
+    first, second = starts[..., 1, :] - starts[..., 0, :], starts[..., 2, :] - starts[..., 0, :]
+    ratio = (norm(second) / norm(first))[..., None]
+    return unit(first * ratio - second / ratio)
 
 
 def distances_to_polylines(points: Array, polylines: Array) -> Array:
@@ -73,5 +91,5 @@ def distances_to_polylines(points: Array, polylines: Array) -> Array:
     offsets = points[:, :, None] - starts[:, None]
     along = np.einsum("mqkd,mkd->mqk", offsets, steps) / np.where(squares > 0.0, squares, 1.0)[:, None]
     feet = np.clip(along, 0.0, 1.0)[..., None] * steps[:, None]
-    distances: Array = np.linalg.norm(offsets - feet, axis=-1).min(axis=-1)
+    distances: Array = norm(offsets - feet).min(axis=-1)
     return distances

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from cadpanel.errors import PanelError
 from cadpanel.reference.model import PanelReference, Seam
 from cadpanel.reference.orient import turn
-from cadpanel.reference.polyline import distances_to_polylines
+from cadpanel.reference.polyline import distances_to_polylines, norm
 
 Array = NDArray[np.float64]
 
@@ -122,7 +122,7 @@ def _touching_ends(curves: Array, tolerance: float) -> tuple[NDArray[np.intp], N
 
 def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
     """Tell for each pair of (m, 3) points whether they lie within the tolerance: (m,)."""
-    near: NDArray[np.bool_] = np.linalg.norm(first - second, axis=-1) <= tolerance
+    near: NDArray[np.bool_] = norm(first - second) <= tolerance
     return near
 
 
@@ -148,7 +148,7 @@ def _refuse_branches(pairs: NDArray[np.intp], panels: Sequence[PanelReference], 
     names = " and ".join(f"'{panels[index].name}'" for index in others)
     raise PanelError(
         panels[end // 2].name,
-        f"in '{source}', it meets panels {names} along one and the same end: a seam joins two panels, delete one of them.",
+        f"in '{source}', it meets panels {names} along one and the same end: a seam joins two, delete one of them.",
     )
 
 

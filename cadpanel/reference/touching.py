@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import STENCIL, arc_length, interpolate
+from cadpanel.reference.polyline import STENCIL, arc_length, interpolate, norm
 
 Array = NDArray[np.float64]
 
@@ -106,7 +107,7 @@ def split_at_vertices(edges: Sequence[Edge], tolerance: float) -> list[Edge]:
     for edge in edges:
         cuts = _positions_on(edge, vertices, tolerance)
         borders = [0.0, *cuts, edge.length]
-        for start, stop in zip(borders[:-1], borders[1:], strict=True):
+        for start, stop in pairwise(borders):
             points, normals = edge.at(np.linspace(start, stop, PIECE_POINTS))
             pieces.append(Edge(edge.face, points, normals, arc_length(points)))
     return pieces
@@ -114,17 +115,19 @@ def split_at_vertices(edges: Sequence[Edge], tolerance: float) -> list[Edge]:
 
 def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
     """Tell for every pair of (m, 3) and (k, 3) points whether they lie within the tolerance: (m, k)."""
-    near: NDArray[np.bool_] = np.linalg.norm(first[:, None] - second[None], axis=-1) <= tolerance
+    near: NDArray[np.bool_] = norm(first[:, None] - second[None]) <= tolerance
     return near
 
 
 def _coincide(first: Edge, second: Edge, tolerance: float) -> bool | None:
     """Return None where two edges do not coincide, else whether their normals lie on the same side."""
-    parts = np.linspace(0.0, 1.0, PROBES)
-    points, normals = first.at(parts * first.length)
-    other_points, other_normals = second.at(parts * second.length)
+    points, normals, other_points, other_normals = first.points, first.normals, second.points, second.normals
+    if len(points) != len(other_points):
+        parts = np.linspace(0.0, 1.0, PROBES)
+        points, normals = first.at(parts * first.length)
+        other_points, other_normals = second.at(parts * second.length)
     for order in (slice(None), slice(None, None, -1)):
-        if (np.linalg.norm(points - other_points[order], axis=1) <= tolerance).all():
+        if (norm(points - other_points[order]) <= tolerance).all():
             return bool(np.sum(normals * other_normals[order]) > 0.0)
     return None
 
@@ -139,7 +142,7 @@ def _positions_on(edge: Edge, vertices: Array, tolerance: float) -> list[float]:
     squares = np.maximum(np.einsum("kd,kd->k", steps, steps), np.finfo(float).tiny)
     offsets = vertices[:, None] - points[None, :-1]
     along = np.clip(np.einsum("vkd,kd->vk", offsets, steps) / squares, 0.0, 1.0)
-    distances = np.linalg.norm(offsets - along[..., None] * steps, axis=-1)
+    distances = norm(offsets - along[..., None] * steps)
     nearest = distances.argmin(axis=1)
     rows = np.arange(len(vertices))
     positions = lengths[nearest] + along[rows, nearest] * (lengths[1] - lengths[0])

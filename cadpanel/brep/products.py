@@ -7,7 +7,8 @@ some write one product, some an assembly with a nameless product for each face; 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from OCP.IFSelect import IFSelect_RetDone
@@ -38,14 +39,24 @@ GENERIC_NAME = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class NamedShape:
-    """A shape placed in the file's coordinates (mm); the name is empty where the file gives none."""
+    """A shape placed in the file's coordinates (mm); names are empty where the file gives none.
+
+    Attributes:
+        name: the product's name.
+        instance: the name of this use of the product in its assembly.
+        shape: the placed shape.
+    """
 
     name: str
+    instance: str
     shape: TopoDS_Shape
 
 
 def read_products(path: Path) -> tuple[NamedShape, ...]:
     """Return the file's panels as placed shapes, in file order, lengths in mm.
+
+    A panel is called by its product. Where several panels are one product in different places, they are called by their
+    instances.
 
     Raises:
         ReferenceFileError: the kernel cannot read the file, or only a part of it.
@@ -65,7 +76,11 @@ def read_products(path: Path) -> tuple[NamedShape, ...]:
         ) from error
     if len(products) == 1:
         products = _split(products[0])
-    return tuple(products)
+    uses = Counter(product.name for product in products)
+    return tuple(
+        replace(product, name=product.instance or product.name) if uses[product.name] > 1 else product
+        for product in products
+    )
 
 
 def _transfer(path: Path, document: TDocStd_Document) -> None:
@@ -108,7 +123,9 @@ def _first_fail(check: Interface_Check) -> str:
 
 def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
     """Return the panels below one label, placed by `location`."""
-    product = TDF_Label()
+    product, instance = TDF_Label(), _name(label)
+    if instance.isdecimal():  # a number is what programs call a use of a product when the user does not
+        instance = ""
     if XCAFDoc_ShapeTool.IsReference_s(label):
         location = location.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label))
         XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
@@ -119,7 +136,7 @@ def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
     if XCAFDoc_ShapeTool.IsAssembly_s(product):
         XCAFDoc_ShapeTool.GetComponents_s(product, components)
     if components.Length() == 0 or _is_sheet_in_pieces(product, components):
-        return [NamedShape(name, XCAFDoc_ShapeTool.GetShape_s(product).Moved(location))]
+        return [NamedShape(name, instance, XCAFDoc_ShapeTool.GetShape_s(product).Moved(location))]
     return [
         panel for index in range(1, components.Length() + 1) for panel in _flatten(components.Value(index), location)
     ]
@@ -157,7 +174,7 @@ def _split(product: NamedShape) -> list[NamedShape]:
     groups = [child for child in children if child.ShapeType() in (TopAbs_COMPOUND, TopAbs_SHELL)]
     if shape.ShapeType() != TopAbs_COMPOUND or len(groups) < len(children) or all(map(_is_one_face, groups)):
         return [product]
-    return [NamedShape("", group) for group in groups]
+    return [NamedShape("", "", group) for group in groups]
 
 
 def _children(shape: TopoDS_Shape) -> list[TopoDS_Shape]:

@@ -30,6 +30,9 @@ SAMPLES_PER_PANEL = 125
 FEWEST_SAMPLES_PER_FACE = 9
 # Grid lines each way on which a face is measured before it is sampled.
 MEASURING_GRID = 5
+# Where the speed along the lines changes by more than this factor, the face is measured again on a finer grid.
+SPEED_RATIO = 1.5
+FINE_MEASURING_GRID = 25
 # How closely a boundary must follow the border of the parameter range for the face to count as untrimmed,
 # as a part of that range.
 BORDER = 1e-6
@@ -87,25 +90,31 @@ def _measure(face: TopoDS_Face) -> _MeasuredFace:
     u_min, u_max, v_min, v_max = BRepTools.UVBounds_s(face)
     bounds = np.array([[u_min, u_max], [v_min, v_max]])
     edges = sample_edges(face, surface, bounds.mean(axis=1), side)
-    middles = (np.arange(MEASURING_GRID) + 0.5) / MEASURING_GRID
-    _, along_u, along_v = evaluate(surface, _grid(bounds, middles, middles))
-    steps = (bounds[:, 1] - bounds[:, 0]) / MEASURING_GRID
-    shape = (MEASURING_GRID, MEASURING_GRID)
-    step_u = steps[0] * norm(along_u).reshape(shape).mean(axis=1)
-    step_v = steps[1] * norm(along_v).reshape(shape).mean(axis=0)
-    full_area = float(norm(cross(along_u, along_v)).sum() * steps.prod())
+    reach, full_area = _measure_range(surface, bounds, MEASURING_GRID)
+    if any(steps.max() > SPEED_RATIO * steps.min() for steps in map(np.diff, reach)):
+        reach, full_area = _measure_range(surface, bounds, FINE_MEASURING_GRID)
     trimmed = _is_trimmed(edges, bounds)
     return _MeasuredFace(
         face=face,
         surface=surface,
         side=side,
         bounds=bounds,
-        reach=(np.concatenate([[0.0], np.cumsum(step_u)]), np.concatenate([[0.0], np.cumsum(step_v)])),
+        reach=reach,
         edges=edges,
         trimmed=trimmed,
         area=_exact_area(face) if trimmed else full_area,
         full_area=full_area,
     )
+
+
+def _measure_range(surface: BRepAdaptor_Surface, bounds: Array, lines: int) -> tuple[tuple[Array, Array], float]:
+    """Return the reach along u and v, as in `_MeasuredFace`, and the area of a parameter range."""
+    middles = (np.arange(lines) + 0.5) / lines
+    _, along_u, along_v = evaluate(surface, _grid(bounds, middles, middles))
+    steps = (bounds[:, 1] - bounds[:, 0]) / lines
+    reach_u = np.concatenate([[0.0], np.cumsum(steps[0] * norm(along_u).reshape(lines, lines).mean(axis=1))])
+    reach_v = np.concatenate([[0.0], np.cumsum(steps[1] * norm(along_v).reshape(lines, lines).mean(axis=0))])
+    return (reach_u, reach_v), float(norm(cross(along_u, along_v)).sum() * steps.prod())
 
 
 def _is_trimmed(edges: tuple[Edge, ...], bounds: Array) -> bool:

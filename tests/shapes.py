@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -94,3 +95,42 @@ def random_panel(
         cut_points=np.array([center - half * along, center + half * along]),
         cut_normals=np.array(cuts),
     )
+
+
+def folded_panel(
+    *,
+    name: str = "A-01",
+    chain: str = "pcp",
+    radius: float = 200.0,
+    half_angle: float = 0.0,
+    sweep: float = 1.0,
+    widths: Sequence[float] = (200.0, 200.0),
+    turns: Sequence[float] = (0.0, 0.0),
+    length: float = 1000.0,
+    cut_normals: Sequence[Sequence[float]] = ((1.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
+) -> PanelShape:
+    """A panel by hand: first ruling through the origin along x, n = z, b = -y; cuts at x = -length / 2 and length / 2."""
+    patches: list[Patch] = [
+        PlanePatch() if kind == "p" else ConePatch(radius=radius, half_angle=half_angle, sweep=sweep) for kind in chain
+    ]
+    steps = list(zip(widths, turns, strict=True))
+    points, directions, normals = walk(
+        patches, steps, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    )
+    cuts = np.array(cut_normals, dtype=float)
+    return PanelShape(
+        name=name,
+        feature="by hand",
+        points=points,
+        directions=directions,
+        normals=normals,
+        patches=tuple(patches),
+        cut_points=np.array([[-0.5 * length, 0.0, 0.0], [0.5 * length, 0.0, 0.0]]),
+        cut_normals=cuts / np.linalg.norm(cuts, axis=1, keepdims=True),
+    )
+
+
+def moved(shape: PanelShape, shift: Sequence[float]) -> PanelShape:
+    """The same panel elsewhere."""
+    offset = np.array(shift, dtype=float)
+    return replace(shape, points=shape.points + offset, cut_points=shape.cut_points + offset)

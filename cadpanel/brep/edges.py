@@ -11,9 +11,10 @@ from OCP.Geom2d import Geom2d_Curve
 from OCP.gp import gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 
 from cadpanel.brep import kernel
+from cadpanel.geometry.frames import cross
 from cadpanel.geometry.sections import EllipticSection
 from cadpanel.geometry.shape import Array
 
@@ -39,7 +40,7 @@ def arc_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, section: EllipticSection
     major = float(np.linalg.norm(section.cosine_axis))
     # A circle's two half axes may come out in the wrong order by a rounding error, which the kernel refuses.
     minor = min(major, float(np.linalg.norm(section.sine_axis)))
-    turn = np.cross(section.cosine_axis / major, section.sine_axis / minor)
+    turn = cross(section.cosine_axis / major, section.sine_axis / minor)
     conic = gp_Elips(kernel.conic_frame(section.center, turn, section.cosine_axis / major), major, minor)
     return _edge(Geom_Ellipse(conic), first, last, section.start, section.stop)
 
@@ -71,10 +72,4 @@ def face_on(surface: Geom_Surface, agrees: bool, loop: Sequence[TopoDS_Shape]) -
     face = TopoDS_Face()
     _BUILDER.MakeFace(face, surface, kernel.TOLERANCE)
     _BUILDER.Add(face, wire if agrees else wire.Reversed())
-    return face if agrees else _as_face(face.Reversed())
-
-
-def _as_face(shape: TopoDS_Shape) -> TopoDS_Face:
-    from OCP.TopoDS import TopoDS
-
-    return TopoDS.Face_s(shape)
+    return face if agrees else TopoDS.Face_s(face.Reversed())

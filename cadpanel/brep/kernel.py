@@ -1,4 +1,4 @@
-"""Tiny conversions between NumPy arrays and the kernel's points, directions and frames. One function a pair of types."""
+"""Tiny conversions between NumPy arrays and the kernel's points, directions and frames, one a pair of types."""
 
 from __future__ import annotations
 

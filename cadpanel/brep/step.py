@@ -62,8 +62,8 @@ def _write_whole(target: Path, text: str) -> None:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, target)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(target)
     except OSError as error:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
@@ -127,5 +127,3 @@ def _name(label: TDF_Label) -> str:
     if not label.FindAttribute(TDataStd_Name.GetID_s(), attribute):
         return ""
     return str(attribute.Get().ToExtString())
-
-

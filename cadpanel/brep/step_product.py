@@ -53,9 +53,7 @@ def step_file(
         if color is not None:
             styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
     if styled:
-        text.add(
-            f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})"
-        )
+        text.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})")
     return _header(title, schema_name) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
 
 
@@ -112,9 +110,7 @@ class _Frame:
     def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str) -> None:
         """Put a part into the assembly where it is: both origins coincide."""
         add = self._text.add
-        usage = add(
-            f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)"
-        )
+        usage = add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)")
         placed = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})")
         identity = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{self.origin})")
         relation = add(

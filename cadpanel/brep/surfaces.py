@@ -107,10 +107,10 @@ def _interpolation(poles: int) -> tuple[Array, Array, Array]:
     """Nodes on [0, 1] crowded to the ends, the distinct knots, and the matrix from values at nodes to poles."""
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(poles) / (poles - 1))
     inner = np.convolve(nodes, np.full(ARC_DEGREE, 1.0 / ARC_DEGREE), mode="valid")[1:-1]
-    knots = np.concatenate([[0.0], inner, [1.0]])
-    clamped = np.concatenate([np.zeros(ARC_DEGREE), knots, np.ones(ARC_DEGREE)])
+    knots: Array = np.concatenate([[0.0], inner, [1.0]])
+    clamped: Array = np.concatenate([np.zeros(ARC_DEGREE), knots, np.ones(ARC_DEGREE)])
     matrix = BSpline.design_matrix(nodes, clamped, ARC_DEGREE).toarray()
-    return nodes, knots, np.linalg.inv(matrix)
+    return nodes, knots, np.asarray(np.linalg.inv(matrix), dtype=np.float64)
 
 
 def _spline(poles: Array, knots: Array, section: EllipticSection) -> Geom2d_BSplineCurve:

@@ -160,8 +160,9 @@ def _check_thickness(shape: PanelShape, away: PanelShape, thickness: float) -> N
         if not (isinstance(near, ConePatch) and isinstance(far, ConePatch)):
             continue
         room = min(_radii(shape, index, near)) * math.cos(near.half_angle)
-        needed = abs(near.radius) - abs(far.radius)
-        if needed > 0.0 and (far.radius * near.radius <= 0.0 or min(_radii(away, index, far)) < SMALLEST_RADIUS):
+        beyond_axis = far.radius * near.radius <= 0.0
+        inside = abs(far.radius) < abs(near.radius)
+        if beyond_axis or (inside and min(_radii(away, index, far)) < SMALLEST_RADIUS):
             raise PanelError(
                 shape.name,
                 f"the sheet of {thickness:g} mm is thicker than the radius of patch {index + 1} allows, "
@@ -189,7 +190,8 @@ def _check_face(shape: PanelShape, where: str) -> None:
         )
     lengths = np.einsum("rx,rx->r", corners[1] - corners[0], shape.directions)
     if lengths.min() < SMALLEST_LENGTH:
-        raise PanelError(shape.name, _crossing_cuts(float(lengths.min()), f"at ruling {int(lengths.argmin()) + 1}", where))
+        at = f"at ruling {int(lengths.argmin()) + 1}"
+        raise PanelError(shape.name, _crossing_cuts(float(lengths.min()), at, where))
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):
             _check_cone(shape, index, patch, where)
@@ -200,8 +202,8 @@ def _check_face(shape: PanelShape, where: str) -> None:
     if turn > 0.5 * math.pi and crosses_itself(shape):
         raise PanelError(
             shape.name,
-            f"the fold runs into itself{where} after turning by {math.degrees(turn):.4g} degrees; shorten the flanges or "
-            "split the panel.",
+            f"the fold runs into itself{where} after turning by {math.degrees(turn):.4g} degrees; shorten the flanges "
+            "or split the panel.",
         )
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cadpanel.geometry.frames import cross
 from cadpanel.geometry.shape import Array, ConePatch
 
 
@@ -44,7 +45,8 @@ class AxisFrame:
 
     def radials(self, sweep_angles: Array) -> Array:
         """(m, 3) e(phi) for (m,) sweep angles phi."""
-        return np.outer(np.cos(sweep_angles), self.radial) + np.outer(np.sin(sweep_angles), self.tangential)
+        turned = np.outer(np.cos(sweep_angles), self.radial) + np.outer(np.sin(sweep_angles), self.tangential)
+        return np.asarray(turned)
 
     def points(self, sweep_angles: Array, heights: Array) -> Array:
         """(m, 3) points of the surface at (m,) sweep angles and (m,) heights along the generatrix, mm."""
@@ -63,7 +65,7 @@ def axis_frame(point: Array, direction: Array, normal: Array, patch: ConePatch) 
         center=point - level_radius * radial,
         axis=axis,
         radial=radial,
-        tangential=np.cross(axis, radial),
+        tangential=cross(axis, radial),
         level_radius=level_radius,
         half_angle=patch.half_angle,
         sweep=patch.sweep,
@@ -169,7 +171,7 @@ class EllipticSection:
         """(m,) sweep angles phi of the generatrices through the points at (m,) parameters, up to whole turns."""
         beta = self.eccentricity / (1.0 + math.sqrt(1.0 - self.eccentricity**2))
         anomaly = parameters + 2.0 * np.arctan2(beta * np.sin(parameters), 1.0 - beta * np.cos(parameters))
-        return self.phase + self.sense * anomaly
+        return np.asarray(self.phase + self.sense * anomaly)
 
     def heights(self, parameters: Array) -> Array:
         """(m,) heights along the generatrix, measured from the level of the ruling's point p, mm."""

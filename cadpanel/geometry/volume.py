@@ -13,6 +13,7 @@ from typing import Literal
 
 import numpy as np
 
+from cadpanel.geometry.frames import cross
 from cadpanel.geometry.sections import ConeCut, axis_frame, cut_cone
 from cadpanel.geometry.shape import Array, ConePatch, PanelShape
 
@@ -51,7 +52,7 @@ def sheet_volume(shape: PanelShape, thickness: float, skin_side: Literal["outer"
 
 def _quadrilateral_area(corners: Array, normal: Array) -> float:
     """Area of a flat patch with corners (end, ruling, xyz): half the cross product of its diagonals."""
-    diagonals = np.cross(corners[1, 1] - corners[0, 0], corners[1, 0] - corners[0, 1])
+    diagonals = cross(corners[1, 1] - corners[0, 0], corners[1, 0] - corners[0, 1])
     return 0.5 * float(diagonals @ normal)
 
 

@@ -288,6 +288,13 @@ def test_content_counts_and_not_the_extension(tmp_path, strip_file):
     assert len(read_reference(path).panels) == 4
 
 
+def test_path_beyond_ascii_is_read(tmp_path, strip_file):
+    path = tmp_path / "Dächer 北" / "Süd 1.step"
+    path.parent.mkdir()
+    path.write_bytes(strip_file.read_bytes())
+    assert read_reference(path).source == "Süd 1.step"
+
+
 def test_truncated_file_is_refused(tmp_path, strip_file):
     path = tmp_path / "cut.step"
     text = strip_file.read_bytes()

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 # Points an edge at first. Each further pass may double their segments, so the number stays odd (and at most 257).
 FEWEST_POINTS = 33
 PASSES = 4
+EVEN_PARTS = np.linspace(0.0, 1.0, FEWEST_POINTS)
 # Another pass doubles an edge's segments where it turns by more than this between two of them, degrees.
 LARGEST_TURN = 5.0
 # Points are spread anew where the longest segment is longer than the shortest by more than this factor.
@@ -63,14 +64,19 @@ def evaluate(surface: BRepAdaptor_Surface, parameters: Array) -> tuple[Array, Ar
     return values[..., 0, :], values[..., 1, :], values[..., 2, :]
 
 
-def unit_normals(along_u: Array, along_v: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return (..., 3) unit normals along Su x Sv and, (...,), whether each is well defined; the others are zero."""
+def unit_normals(along_u: Array, along_v: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return the normals of a face from its derivatives, each (..., 3).
+
+    Returns:
+        (..., 3) unit normals along Su x Sv, (...,) the length |Su x Sv|, and (...,) whether each normal is well
+        defined; those that are not are zero.
+    """
     normals = cross(along_u, along_v)
     sizes = norm(normals)
     lengths_u, lengths_v = norm(along_u), norm(along_v)
-    scale = np.maximum(lengths_u * lengths_v, lengths_u.mean() * lengths_v.mean())
+    scale = np.maximum(lengths_u * lengths_v, lengths_u.sum() * lengths_v.sum() / sizes.size**2)
     defined = sizes > DEGENERATE * scale
-    return np.where(defined[..., None], normals, 0.0) / np.where(defined, sizes, 1.0)[..., None], defined
+    return normals * np.divide(1.0, sizes, out=np.zeros_like(sizes), where=defined)[..., None], sizes, defined
 
 
 def sample_edges(face: TopoDS_Face, surface: BRepAdaptor_Surface, middle: Array, side: float) -> tuple[Edge, ...]:
@@ -94,7 +100,7 @@ def sample_edges(face: TopoDS_Face, surface: BRepAdaptor_Surface, middle: Array,
     positions = np.array([_even_positions(curve) for curve in curves])
     parameters = np.array([_curve_values(curve, places) for curve, places in zip(curves, positions, strict=True)])
     points, along_u, along_v = evaluate(surface, parameters)
-    normals, defined = unit_normals(along_u, along_v)
+    normals, _, defined = unit_normals(along_u, along_v)
     faulty = np.logical_or(*_faults(points))
     edges = []
     for index, curve in enumerate(curves):
@@ -124,7 +130,7 @@ def _refined(curve: BRepAdaptor_Curve2d, surface: BRepAdaptor_Surface) -> _Sampl
         distances = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
         count = 2 * len(positions) - 1 if coarse else len(positions)
         positions = np.interp(np.linspace(0.0, distances[-1], count), distances, positions)
-    normals, defined = unit_normals(along_u, along_v)
+    normals, _, defined = unit_normals(along_u, along_v)
     return _Samples(points, normals, defined, parameters)
 
 
@@ -141,7 +147,8 @@ def _faults(points: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
 
 def _even_positions(curve: BRepAdaptor_Curve2d) -> Array:
     """Return positions along a curve, evenly spaced in its own parameter."""
-    return np.linspace(curve.FirstParameter(), curve.LastParameter(), FEWEST_POINTS)
+    first, last = curve.FirstParameter(), curve.LastParameter()
+    return np.asarray(first + EVEN_PARTS * (last - first))
 
 
 def _curve_values(curve: BRepAdaptor_Curve2d, positions: Array) -> Array:

@@ -149,8 +149,8 @@ def _sample(face: _MeasuredFace, wanted: float) -> FaceSamples:
     parameters = _grid(face.bounds, middles_u, middles_v)
     points, along_u, along_v = evaluate(face.surface, parameters)
     cells = np.outer(widths_u, widths_v).ravel() * (face.bounds[:, 1] - face.bounds[:, 0]).prod()
-    weights = cells * norm(cross(along_u, along_v))
-    normals, keep = unit_normals(along_u, along_v)
+    normals, sizes, keep = unit_normals(along_u, along_v)
+    weights = cells * sizes
     if face.trimmed:
         keep &= _inside(face, parameters)
         covered = weights[keep].sum()

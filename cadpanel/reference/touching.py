@@ -19,7 +19,7 @@ PROBES = 9
 # Points of a piece that is cut out of an edge.
 PIECE_POINTS = 33
 # Neighbouring points closer than this part of the edge's length count as one.
-SAME_POINT = 1e-9
+SAME_POINT = 1e-6
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,6 +72,14 @@ def test_gap_up_to_the_tolerance_is_a_seam_and_beyond_it_none():
     assert len(assemble(apart, "a.step", seam_tolerance=0.8).seams) == 0
 
 
+def test_ends_sampled_at_other_places_of_one_curve_are_a_seam():
+    def slow(u, v):
+        # Two faces whose border lies elsewhere: the same curve, but not the same points on it.
+        return Lip(start=2000.0)(u, v)
+
+    assert len(assemble([STRIP[0], raw_panel(slow, "slow", cuts=(0.0, 0.3, 1.2, 3.0))], "a.step", 2.0).seams) == 1
+
+
 def test_ends_with_common_corners_but_different_curves_are_no_seam():
     first = Lip(twist=0.0, taper=0.0)
 

@@ -109,7 +109,7 @@ def folded_panel(
     length: float = 1000.0,
     cut_normals: Sequence[Sequence[float]] = ((1.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
 ) -> PanelShape:
-    """A panel by hand: first ruling along x through the origin, n = z, b = -y, cuts at x = -length / 2 and length / 2."""
+    """A panel: first ruling along x through the origin, n = z, b = -y; cut at x = -length / 2 and length / 2."""
     patches: list[Patch] = [
         PlanePatch() if kind == "p" else ConePatch(radius=radius, half_angle=half_angle, sweep=sweep) for kind in chain
     ]

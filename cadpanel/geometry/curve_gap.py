@@ -96,7 +96,7 @@ def _to_piece(points: Array, pieces: CurvePieces, index: int) -> Array:
 
 def _to_chain(points: Array, pieces: CurvePieces) -> Array:
     """(m, s) distances from points (m, s, 3) to the nearest piece of each chain."""
-    return np.min([_to_piece(points, pieces, index) for index in range(pieces.centers.shape[1])], axis=0)
+    return np.asarray(np.min([_to_piece(points, pieces, index) for index in range(pieces.centers.shape[1])], axis=0))
 
 
 def _farthest(chain: CurvePieces, other: CurvePieces) -> Array:

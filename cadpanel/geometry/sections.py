@@ -165,7 +165,7 @@ class EllipticSection:
     def points(self, parameters: Array) -> Array:
         """(m, 3) points at (m,) parameters, mm."""
         turned = np.outer(np.cos(parameters), self.cosine_axis) + np.outer(np.sin(parameters), self.sine_axis)
-        return self.center + turned
+        return np.asarray(self.center + turned)
 
     def sweep_angles(self, parameters: Array) -> Array:
         """(m,) sweep angles phi of the generatrices through the points at (m,) parameters, up to whole turns."""

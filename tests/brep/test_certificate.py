@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
 from OCP.gp import gp_Trsf, gp_Vec
-from OCP.STEPControl import STEPControl_AsIs
 from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
@@ -15,7 +15,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from cadpanel.brep import inspection_pool
-from cadpanel.brep.certificate import ExpectedPanel, ExpectedSeam, certify
+from cadpanel.brep.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
 from cadpanel.brep.skin import build_skin
 from cadpanel.brep.solid import build_solid
 from cadpanel.brep.step import write_step
@@ -31,7 +31,10 @@ GAP = 0.25
 
 def expected(shape: PanelShape) -> ExpectedPanel:
     built = straighten(shape).shape
-    kinds = ["plane" if not isinstance(p, ConePatch) else "cone" if p.half_angle else "cylinder" for p in built.patches]
+    kinds: list[PatchKind] = [
+        "plane" if not isinstance(patch, ConePatch) else "cone" if patch.half_angle else "cylinder"
+        for patch in built.patches
+    ]
     volume = sheet_volume(built, THICKNESS)
     return ExpectedPanel(name=shape.name, volume=volume, kinds=tuple(kinds), corners=built.corners())
 
@@ -203,7 +206,7 @@ def test_a_solid_where_a_skin_should_be_fails(delivery):
 def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
     alone = delivery.certify()
     monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
-    monkeypatch.setattr(inspection_pool.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
     assert delivery.certify() == alone
 
 

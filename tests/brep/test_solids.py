@@ -14,9 +14,10 @@ from cadpanel.brep.inspection import inspect
 from cadpanel.brep.skin import build_skin
 from cadpanel.brep.solid import build_solid, volume_of
 from cadpanel.errors import PanelError
+from cadpanel.geometry.buildable import SkinSide
 from cadpanel.geometry.shape import ConePatch
 from cadpanel.geometry.straighten import straighten
-from cadpanel.geometry.tangency import edge_angles
+from cadpanel.geometry.tangency import edge_angles, surface_normals
 from cadpanel.geometry.volume import sheet_volume, skin_area
 from tests.shapes import CHAINS, folded_panel, random_panel
 
@@ -99,8 +100,6 @@ def test_a_solid_has_two_skins_and_four_walls_and_nothing_else(seed):
 @pytest.mark.parametrize("concave", [False, True])
 @pytest.mark.parametrize("half_angle", [0.02, -0.02, 0.0])
 def test_skin_faces_look_outwards(concave, half_angle):
-    from cadpanel.geometry.tangency import surface_normals
-
     shape = random_panel(5, concave=concave, half_angle=half_angle)
     facts = inspect("skin", build_skin(shape))
     for edge, surfaces in zip(facts.straight_edges, facts.edge_surfaces, strict=True):
@@ -111,7 +110,8 @@ def test_skin_faces_look_outwards(concave, half_angle):
 
 def test_the_skin_is_the_outer_or_the_inner_face_of_the_sheet():
     shape = random_panel(8)
-    for skin_side, distance in (("outer", -3.0), ("inner", 3.0)):
+    sides: list[tuple[SkinSide, float]] = [("outer", -3.0), ("inner", 3.0)]
+    for skin_side, distance in sides:
         vertices = inspect("solid", build_solid(shape, 3.0, skin_side)).vertices
         for corners in (shape.corners(), shape.offset(distance).corners()):
             apart = np.linalg.norm(vertices[:, None] - corners.reshape(1, -1, 3), axis=-1).min(axis=0)
@@ -119,9 +119,9 @@ def test_the_skin_is_the_outer_or_the_inner_face_of_the_sheet():
 
 
 def test_what_cannot_be_built_is_refused_by_name():
-    with pytest.raises(PanelError, match="'A-01'.*thicker"):
+    with pytest.raises(PanelError, match=r"'A-01'.*thicker"):
         build_solid(folded_panel(), 250.0)
-    with pytest.raises(PanelError, match="'A-01'.*inside out"):
+    with pytest.raises(PanelError, match=r"'A-01'.*inside out"):
         build_skin(folded_panel(sweep=-1.0))
 
 

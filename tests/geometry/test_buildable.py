@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
 from cadpanel.geometry.buildable import check_buildable, check_skin
+from cadpanel.geometry.shape import ConePatch
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 
@@ -37,7 +38,9 @@ def test_numbers_that_are_not_finite_are_refused(field, number):
 @pytest.mark.parametrize("field", ["radius", "half_angle", "sweep"])
 def test_patch_numbers_that_are_not_finite_are_refused(field):
     shape = folded_panel()
-    patches = (shape.patches[0], replace(shape.patches[1], **{field: math.nan}), shape.patches[2])
+    numbers = {"radius": 200.0, "half_angle": 0.0, "sweep": 1.0, field: math.nan}
+    cone = ConePatch(radius=numbers["radius"], half_angle=numbers["half_angle"], sweep=numbers["sweep"])
+    patches = (shape.patches[0], cone, shape.patches[2])
     refused(replace(shape, patches=patches), "not finite")
 
 

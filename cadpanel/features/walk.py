@@ -1,0 +1,185 @@
+"""Walk a batch of panels of one feature: rulings, corners and their exact derivatives.
+
+Everything here is in each panel's local frame (axes b, t, n of its reference, origin in its middle) and in units of the
+solver's length. A cut plane is t + skew b + tilt n = position in that frame, so it does not move with the chain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.feature import Feature
+from cadpanel.features.patches import Frames
+from cadpanel.geometry.frames import cayley, cayley_rates, cross, dot, point_velocity
+
+Array = NDArray[np.float64]
+
+# Where along the sweep of every curved patch the end curve is held to its neighbour's, besides the corners: a conic
+# with given ends and end tangents has one number left, so a few points pin it.
+ARC_SHARES = (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6)
+
+
+@dataclass(frozen=True, slots=True)
+class Rulings:
+    """n x R ruling frames and their twists.
+
+    Attributes:
+        p, b, t, n: (panels, R, 3) each.
+        twist: (panels, R, 6, N) for the N numbers of the feature, or None where no derivatives were asked for.
+    """
+
+    p: Array
+    b: Array
+    t: Array
+    n: Array
+    twist: Array | None
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """A batch of panels, walked.
+
+    Attributes:
+        feature: the feature of all these panels.
+        values: (panels, N) all numbers, the fixed ones included.
+        anchor: the ruling in the middle of the anchor patch (R = 1).
+        edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
+        carriers: per patch the ruling that its radius is measured at (R = k).
+        arcs: rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
+    """
+
+    feature: Feature
+    values: Array
+    anchor: Rulings
+    edges: Rulings
+    carriers: Rulings
+    arcs: Rulings
+
+
+class _Step:
+    """A frame batch underway, with its accumulated twist."""
+
+    def __init__(self, frames: Frames, twist: Array | None) -> None:
+        self.frames = frames
+        self.twist = twist
+
+    def carry(self, feature: Feature, patch: int, values: Array, way: float) -> _Step:
+        numbers = feature.patch_slice(patch)
+        frames, own = feature.patches[patch].carry(self.frames, values[:, numbers], way)
+        if self.twist is None:
+            return _Step(frames, None)
+        # The patch's numbers may already act on the frame that is carried on (the anchor's radius, say): they add.
+        twist = self.twist.copy()
+        twist[:, :, numbers] += own
+        return _Step(frames, twist)
+
+
+def walk(feature: Feature, values: Array, *, derivatives: bool) -> Walk:
+    """Walk all panels from the middle of their anchor patch to both sides.
+
+    Args:
+        feature: the feature of all panels.
+        values: (panels, N) all numbers of the feature.
+        derivatives: whether twists are wanted.
+    """
+    start = _anchor(feature, values, derivatives)
+    last = len(feature.patches) - 1
+    edges: dict[int, _Step] = {}
+    arcs: list[_Step] = []
+    for side in (-1, 1):
+        step = start.carry(feature, feature.anchor, values, 0.5 * side)
+        edges[feature.anchor + (side > 0)] = step
+        patch = feature.anchor + side
+        while 0 <= patch <= last:
+            step = step.carry(feature, patch, values, float(side))
+            edges[patch + (side > 0)] = step
+            patch += side
+    carriers = [start if i == feature.anchor else edges[i if i > feature.anchor else i + 1] for i in range(last + 1)]
+    for i, patch_spec in enumerate(feature.patches):
+        if patch_spec.kind != "plane":
+            arcs += [_inside(feature, i, carriers[i], values, share) for share in ARC_SHARES]
+    return Walk(
+        feature,
+        values,
+        _stack([start]),
+        _stack([edges[i] for i in range(last + 2)]),
+        _stack(carriers),
+        _stack(arcs),
+    )
+
+
+def _inside(feature: Feature, patch: int, carrier: _Step, values: Array, share: float) -> _Step:
+    if patch == feature.anchor:
+        return carrier.carry(feature, patch, values, share - 0.5)
+    return carrier.carry(feature, patch, values, share if patch > feature.anchor else share - 1.0)
+
+
+def _anchor(feature: Feature, values: Array, derivatives: bool) -> _Step:
+    panels = len(values)
+    shift, turn = values[:, :2], values[:, 2:5]
+    rotation = cayley(turn)
+    p = np.stack([shift[:, 0], np.zeros(panels), shift[:, 1]], axis=-1)
+    frames = Frames(p, rotation[:, :, 0], rotation[:, :, 1], rotation[:, :, 2])
+    if not derivatives:
+        return _Step(frames, None)
+    twist = np.zeros((panels, 6, len(feature.numbers)))
+    twist[:, 3, 0] = 1.0
+    twist[:, 5, 1] = 1.0
+    rates = cayley_rates(turn)
+    twist[:, :3, 2:5] = rates
+    for j in range(3):
+        twist[:, 3:, 2 + j] = cross(p, rates[:, :, j])
+    return _Step(frames, twist)
+
+
+def _stack(steps: list[_Step]) -> Rulings:
+    p, b, t, n = (np.stack([getattr(step.frames, axis) for step in steps], axis=1) for axis in "pbtn")
+    twists = [step.twist for step in steps if step.twist is not None]
+    return Rulings(p, b, t, n, np.stack(twists, axis=1) if twists else None)
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points of the panels that follow the numbers.
+
+    Attributes:
+        position: (panels, 2, R, 3) for end 0 and end 1.
+        jacobian: (panels, 2, R, 3, N) or None without derivatives.
+    """
+
+    position: Array
+    jacobian: Array | None
+
+
+def cut_planes(walked: Walk) -> tuple[Array, Array]:
+    """The cut planes m . x = s: m (panels, 2, 3), not of unit length, and s (panels, 2)."""
+    feature, values = walked.feature, walked.values
+    cuts = np.stack([values[:, feature.cut_slice(end)] for end in (0, 1)], axis=1)
+    return np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1), cuts[..., 0]
+
+
+def pierce(walked: Walk, rulings: Rulings) -> Points:
+    """Where rulings pierce the two cut planes, with exact derivatives where the walk carries twists.
+
+    With the plane m . x = s, the point is c = p + t (s - m . p) / (m . t). A point that is carried with the ruling has
+    the velocity V; sliding along t to stay in the plane adds t (ds - dm . c - m . V) / (m . t).
+    """
+    m, s = cut_planes(walked)
+    rate = dot(m[:, :, None], rulings.t[:, None])
+    slide = (s[..., None] - dot(m[:, :, None], rulings.p[:, None])) / rate
+    position = rulings.p[:, None] + slide[..., None] * rulings.t[:, None]
+    if rulings.twist is None:
+        return Points(position, None)
+    moved = point_velocity(rulings.twist[:, None], position)
+    along = -(m[:, :, None, None] @ moved)[..., 0, :]
+    for end in (0, 1):
+        at = walked.feature.cut_slice(end).start
+        along[:, end, :, at] += 1.0
+        along[:, end, :, at + 1] -= position[:, end, :, 0]
+        along[:, end, :, at + 2] -= position[:, end, :, 2]
+    along /= rate[..., None]
+    moved += rulings.t[:, None, :, :, None] * along[..., None, :]
+    return Points(position, moved)

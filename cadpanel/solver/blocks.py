@@ -1,0 +1,124 @@
+"""Symmetric block matrices of a Gauss-Newton model, and their direct factorization.
+
+Unknowns come in `count` blocks of `size`; a pair of blocks is coupled where some residual sees both. Strips couple
+neighbours only, rings and grids a little more. Blocks are reordered by reverse Cuthill-McKee and the matrix is factorized
+as a band (LAPACK pbtrf), which is linear in the length of a strip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dpbsv
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+
+@dataclass(slots=True)
+class Normal:
+    """The Gauss-Newton model of a cost: gradient J^T r and the blocks of J^T J.
+
+    Attributes:
+        gradient: (count, size).
+        diagonal: (count, size, size).
+        coupling: (pairs, size, size), rows belong to the first block of the pair, columns to the second.
+    """
+
+    gradient: Array
+    diagonal: Array
+    coupling: Array
+
+    @staticmethod
+    def zero(count: int, size: int, pairs: int) -> Normal:
+        """An empty model to add to."""
+        return Normal(np.zeros((count, size)), np.zeros((count, size, size)), np.zeros((pairs, size, size)))
+
+
+@dataclass(frozen=True)
+class BlockPattern:
+    """Which blocks are coupled, and where their entries go in the band.
+
+    Attributes:
+        count: number of blocks.
+        size: unknowns a block.
+        pairs: (pairs, 2) indices of coupled blocks, the lower first; a pair stands once.
+        component: (count,) label of the connected component that each block belongs to.
+    """
+
+    count: int
+    size: int
+    pairs: IntArray
+    components: int = field(init=False)
+    component: IntArray = field(init=False)
+    _order: IntArray = field(init=False, repr=False)
+    _width: int = field(init=False, repr=False)
+    _diagonal_at: IntArray = field(init=False, repr=False)
+    _coupling_at: IntArray = field(init=False, repr=False)
+    _lower: tuple[IntArray, IntArray] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Order the blocks and prepare the scatter into band storage."""
+        set_ = object.__setattr__
+        pairs = np.asarray(self.pairs, dtype=np.intp).reshape(-1, 2)
+        if len(np.unique(pairs, axis=0)) != len(pairs) or np.any(pairs[:, 0] >= pairs[:, 1]):
+            raise ValueError("pairs of blocks must be unique, the lower index first")
+        set_(self, "pairs", pairs)
+        graph = csr_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(self.count, self.count))
+        graph = (graph + graph.T).tocsr()
+        components, labels = connected_components(graph, directed=False)
+        set_(self, "components", int(components))
+        set_(self, "component", labels.astype(np.intp))
+        order = reverse_cuthill_mckee(graph, symmetric_mode=True).astype(np.intp)
+        position = np.empty(self.count, dtype=np.intp)
+        position[order] = np.arange(self.count)
+        set_(self, "_order", order)
+        span = int(np.abs(np.diff(position[pairs], axis=1)).max(initial=0))
+        width = (span + 1) * self.size
+        set_(self, "_width", width)
+        # Lower band storage in Fortran order: entry (row, column) stands at [column * width + row - column].
+        rows, columns = np.tril_indices(self.size)
+        set_(self, "_lower", (rows, columns))
+        first = position * self.size
+        set_(self, "_diagonal_at", (first[:, None] + columns) * width + (rows - columns))
+        i, j = np.indices((self.size, self.size))
+        row, column = first[pairs[:, 0], None, None] + i, first[pairs[:, 1], None, None] + j
+        high, low = np.maximum(row, column), np.minimum(row, column)
+        set_(self, "_coupling_at", low * width + high - low)
+
+    def solve(self, normal: Normal, damping: Array) -> Array | None:
+        """(count, size) the step s of (J^T J + diag(damping)) s = -gradient, or None if it is not positive definite.
+
+        Args:
+            normal: the model.
+            damping: (count, size) added to the diagonal.
+        """
+        diagonal = normal.diagonal.copy()
+        i = np.arange(self.size)
+        diagonal[:, i, i] += damping
+        if not len(self.pairs):
+            return _solve_separate(diagonal, normal.gradient)
+        flat = np.zeros(self._width * self.count * self.size)
+        flat[self._diagonal_at] = diagonal[:, self._lower[0], self._lower[1]]
+        flat[self._coupling_at] = normal.coupling
+        band = flat.reshape(-1, self._width).T
+        right = -normal.gradient[self._order].reshape(-1)
+        _, solution, info = dpbsv(band, right, lower=1, overwrite_ab=1, overwrite_b=1)
+        if info != 0:
+            return None
+        step = np.empty((self.count, self.size))
+        step[self._order] = solution.reshape(self.count, self.size)
+        return step
+
+
+def _solve_separate(matrices: Array, gradient: Array) -> Array | None:
+    try:
+        lower = np.linalg.cholesky(matrices)
+    except np.linalg.LinAlgError:
+        return None
+    half = np.linalg.solve(lower, -gradient[..., None])
+    return np.linalg.solve(np.swapaxes(lower, 1, 2), half)[..., 0]

@@ -1,0 +1,78 @@
+"""Vectors that are to stay within a distance: a tolerance in millimetres instead of a weight.
+
+At the smallest cost under |v_k| <= tau_k the pull on each vector points along the vector itself, so the solution is that
+of a plain weighted least squares problem, cost + sum of w_k |v_k|^2 / 2, for the right weights w_k >= 0, where w_k = 0
+unless |v_k| = tau_k (the Karush-Kuhn-Tucker conditions). The weights are found by multiplication: a vector that is too
+long gets a larger weight, one that is short a smaller one. Every inner problem is smooth, and no weight ever becomes
+larger than the tolerance asks for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# What cannot be held is given up here, before the weights drown the rest of the objective.
+MOST_WEIGHT = 1e5
+
+# How the paces change, between which bounds, and how far a weight may leap in one round.
+_QUICKEN, _CALM, _PACES, _LEAP = 1.3, 0.6, (0.5, 8.0), 3.0
+_LEAST_RATIO = 1e-6
+
+
+class Hold:
+    """Distances and weights of a batch of held vectors.
+
+    Attributes:
+        radius: (groups, vectors) the distances tau.
+        weight: (groups, vectors) the weights w.
+    """
+
+    def __init__(self, radius: Array, *, weight: float, least: float) -> None:
+        """Start with one weight for all vectors.
+
+        Args:
+            radius: (groups, vectors) the distances tau, above 0.
+            weight: the first weight.
+            least: no weight sinks below it.
+        """
+        self.radius = radius
+        self.weight = np.full(radius.shape, weight)
+        self._least = least
+        self._pace = np.ones(radius.shape)
+        self._side = np.zeros(radius.shape)
+
+    def roots(self) -> Array:
+        """(groups, vectors) square roots of the weights: the residual of a vector is its root times the vector."""
+        return np.sqrt(self.weight)
+
+    def excess(self, vectors: Array) -> float:
+        """The largest |v| / tau."""
+        return float(self._ratio(vectors).max(initial=0.0))
+
+    def adapt(self, vectors: Array, *, only_grow: bool) -> None:
+        """Multiply the weights by (|v| / tau)^pace for the next inner solve.
+
+        A vector that stays on one side of its distance quickens its pace, one that jumps from side to side slows down
+        (the rule of Rprop, Riedmiller and Braun 1993, on the logarithms of the weights).
+
+        Args:
+            vectors: (groups, vectors, d) at the last solution.
+            only_grow: leave the weights of short vectors alone, to close in on a solution that holds.
+        """
+        ratio = np.maximum(self._ratio(vectors), _LEAST_RATIO)
+        side = np.sign(np.log(ratio))
+        self._pace = np.clip(self._pace * np.where(side == self._side, _QUICKEN, _CALM), *_PACES)
+        self._side = side
+        factor = np.clip(ratio**self._pace, 1.0 if only_grow else 1.0 / _LEAP, _LEAP)
+        self.weight = np.clip(self.weight * factor, self._least, MOST_WEIGHT)
+
+    def tighten(self, share: float) -> None:
+        """Shrink all distances to a share of themselves; the weights stay as a start."""
+        self.radius = share * self.radius
+
+    def _ratio(self, vectors: Array) -> Array:
+        ratio: Array = np.linalg.norm(vectors, axis=-1) / self.radius
+        return ratio

@@ -1,0 +1,102 @@
+"""Least squares with held vectors: Levenberg-Marquardt inside, weights adapted outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.solver.hold import Hold
+from cadpanel.solver.levenberg_marquardt import Model, Stopping, levenberg_marquardt
+
+Array = NDArray[np.float64]
+
+
+class Held(Protocol):
+    """Vectors of the model that are to stay within distances."""
+
+    hold: Hold
+
+    def vectors_at(self, unknowns: Array) -> Array:
+        """(groups, vectors, d) at the unknowns."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Schedule:
+    """How long the weights are adapted.
+
+    Attributes:
+        balance: rounds at most in which weights rise and fall.
+        close: rounds at most after these in which weights only rise, until everything holds.
+        steady: relative change of the free cost between two rounds below which it is at rest.
+        slack: how far above its distance a vector may be for the balance to end.
+        inner: stopping of the solve in a round.
+    """
+
+    balance: int = 60
+    close: int = 40
+    steady: float = 2e-3
+    slack: float = 1e-3
+    inner: Stopping = Stopping(cost=1e-4, iterations=10)
+
+
+@dataclass(frozen=True, slots=True)
+class HeldSolution:
+    """What was reached.
+
+    Attributes:
+        unknowns: (count, size).
+        iterations: linear systems solved in all rounds.
+        rounds: how often the weights were adapted.
+        excess: the largest |v| / tau that is left; up to 1 where everything holds.
+    """
+
+    unknowns: Array
+    iterations: int
+    rounds: int
+    excess: float
+
+
+def hold_tolerances(
+    model: Model,
+    held: Sequence[Held],
+    free_cost: Callable[[Array], float],
+    start: Array,
+    schedule: Schedule,
+    progress: Callable[[int, float], None] | None = None,
+) -> HeldSolution:
+    """The smallest free cost at which all held vectors stay within their distances.
+
+    Args:
+        model: free cost and held terms together.
+        held: the held terms.
+        free_cost: the cost without the held terms, to see when it comes to rest.
+        start: unknowns to begin with.
+        schedule: how long to go on.
+        progress: called after every round with its number and the largest |v| / tau.
+    """
+    unknowns, iterations, last = start, 0, np.inf
+    best: tuple[float, Array] | None = None
+    for round_ in range(1, schedule.balance + schedule.close + 1):
+        solution = levenberg_marquardt(model, unknowns, schedule.inner)
+        unknowns, iterations = solution.unknowns, iterations + solution.iterations
+        vectors = [term.vectors_at(unknowns) for term in held]
+        excess = max((t.hold.excess(v) for t, v in zip(held, vectors, strict=True)), default=0.0)
+        cost = free_cost(unknowns)
+        closing = round_ > schedule.balance
+        if progress is not None:
+            progress(round_, excess)
+        if best is None or excess < best[0]:
+            best = (excess, unknowns)
+        at_rest = abs(cost - last) <= schedule.steady * cost
+        if excess <= 1.0 + (0.0 if closing else schedule.slack) and (closing or at_rest):
+            return HeldSolution(unknowns, iterations, round_, excess)
+        last = cost
+        for term, v in zip(held, vectors, strict=True):
+            term.hold.adapt(v, only_grow=closing)
+    assert best is not None
+    return HeldSolution(best[1], iterations, schedule.balance + schedule.close, best[0])

@@ -1,0 +1,86 @@
+"""Residual rows of a term and how they enter the normal equations; written once for all terms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from cadpanel.solver.blocks import Normal
+from cadpanel.terms.state import State
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+
+class Term(Protocol):
+    """One part of the objective: half the sum of squares of its residuals."""
+
+    def cost(self, state: State) -> Array:
+        """(panels,) the term's cost, each residual booked on one of its panels."""
+        ...
+
+    def add_to(self, normal: Normal, state: State) -> Array:
+        """Add gradient and J^T J to the model; returns the cost as above."""
+        ...
+
+    def rows(self, state: State) -> list[Rows]:
+        """The same as plain residual rows with their Jacobians, for checks and for other solvers."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Residuals in groups; a group sees one panel, or the two panels of a seam.
+
+    Attributes:
+        residual: (groups, q).
+        panels: one or two index arrays (groups,).
+        jacobians: as many (groups, q, unknowns), by the unknowns of those panels.
+        pair: (groups,) index among the coupled pairs of blocks (two panels only).
+    """
+
+    residual: Array
+    panels: tuple[IntArray, ...]
+    jacobians: tuple[Array, ...]
+    pair: IntArray | None = None
+
+    def booked(self, panels: int) -> Array:
+        """(panels,) cost, booked on the first panel of each group."""
+        return booked_cost(self.residual, self.panels[0], panels)
+
+    def add_to(self, normal: Normal) -> None:
+        """Add J^T r and J^T J."""
+        for panels, jacobian in zip(self.panels, self.jacobians, strict=True):
+            transposed = np.swapaxes(jacobian, 1, 2)
+            scatter_add(normal.gradient, panels, (transposed @ self.residual[..., None])[..., 0])
+            scatter_add(normal.diagonal, panels, transposed @ jacobian)
+        if self.pair is not None:
+            scatter_add(normal.coupling, self.pair, np.swapaxes(self.jacobians[0], 1, 2) @ self.jacobians[1])
+
+
+def add_rows(rows: list[Rows], normal: Normal, panels: int) -> Array:
+    """Add all rows to the model; returns the (panels,) cost."""
+    cost = np.zeros(panels)
+    for group in rows:
+        group.add_to(normal)
+        cost += group.booked(panels)
+    return cost
+
+
+def booked_cost(residual: Array, panels: IntArray, count: int) -> Array:
+    """(count,) half the squares of `residual` (groups, q), booked on `panels` (groups,)."""
+    return np.bincount(panels, 0.5 * np.einsum("gq,gq->g", residual, residual), minlength=count)
+
+
+def scatter_add(target: Array, index: IntArray, values: Array) -> None:
+    """target[index] += values, adding up where an index repeats; `index` is (groups,), `values` (groups, ...)."""
+    if np.all(index[1:] > index[:-1]):
+        target[index] += values
+        return
+    groups = len(index)
+    gather = csr_array((np.ones(groups), (index, np.arange(groups))), shape=(len(target), groups))
+    target += (gather @ values.reshape(groups, -1)).reshape(target.shape)

@@ -108,10 +108,11 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     for switch in (reader.SetColorMode, reader.SetLayerMode, reader.SetPropsMode, reader.SetGDTMode, reader.SetMatMode):
         switch(False)
     reader.SetNameMode(True)
-    if not heal:
-        reader.SetShapeFixParameters(_no_healing())
     if reader.ReadFile(str(target)) != IFSelect_RetDone:
         raise DeliveryError(f"{target} cannot be read: it is not a complete STEP file.")
+    if not heal:
+        # Only now: reading a file sets them back.
+        reader.SetShapeFixParameters(_no_healing())
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     if not reader.Transfer(document):
         raise DeliveryError(f"{target} cannot be read: it holds no shapes.")

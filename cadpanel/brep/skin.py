@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -47,10 +48,14 @@ def build_skin(shape: PanelShape) -> TopoDS_Shell:
         PanelError: if the skin cannot be built (see `check_skin`).
     """
     check_skin(shape)
-    topology = skin_topology(straighten(shape).shape)
+    return shell_of(skin_topology(straighten(shape).shape).faces)
+
+
+def shell_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Shell:
+    """A shell of faces that already share their edges."""
     shell = TopoDS_Shell()
     _BUILDER.MakeShell(shell)
-    for face in topology.faces:
+    for face in faces:
         _BUILDER.Add(shell, face)
     return shell
 

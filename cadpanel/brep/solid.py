@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from OCP.BRep import BRep_Builder
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 
 from cadpanel.brep import edges, surfaces
-from cadpanel.brep.skin import SkinTopology, skin_topology
+from cadpanel.brep.skin import SkinTopology, shell_of, skin_topology
 from cadpanel.geometry.buildable import SkinSide, check_buildable, other_face
 from cadpanel.geometry.shape import Array, PanelShape
-from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.straighten import Straightened, straighten
 
 _BUILDER = BRep_Builder()
 
@@ -26,22 +28,42 @@ def build_solid(shape: PanelShape, thickness: float, skin_side: SkinSide = "oute
     Raises:
         PanelError: if the sheet cannot be built (see `check_buildable`).
     """
+    return build_panel(shape, thickness, skin_side).solid
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuiltPanel:
+    """A panel's skin and sheet; the sheet's own skin faces are the skin's.
+
+    Attributes:
+        straightened: the shape as it was built, and which cones became cylinders.
+        skin: open shell, normals along n.
+        solid: the sheet.
+    """
+
+    straightened: Straightened
+    skin: TopoDS_Shell
+    solid: TopoDS_Solid
+
+
+def build_panel(shape: PanelShape, thickness: float, skin_side: SkinSide = "outer") -> BuiltPanel:
+    """Skin and sheet at once, which costs little more than the sheet alone; see `build_skin` and `build_solid`.
+
+    Raises:
+        PanelError: if the sheet cannot be built (see `check_buildable`).
+    """
     check_buildable(shape, thickness, skin_side)
-    own = straighten(shape).shape
-    away = other_face(own, thickness, skin_side)
-    upper, lower = (own, away) if skin_side == "outer" else (away, own)
-    top, bottom = skin_topology(upper), skin_topology(lower)
-    faces: list[TopoDS_Shape] = [*top.faces, *(face.Reversed() for face in bottom.faces)]
-    faces += _walls(own, top, bottom)
-    shell = TopoDS_Shell()
-    _BUILDER.MakeShell(shell)
-    for face in faces:
-        _BUILDER.Add(shell, face)
+    straightened = straighten(shape)
+    own = straightened.shape
+    near, far = skin_topology(own), skin_topology(other_face(own, thickness, skin_side))
+    top, bottom = (near, far) if skin_side == "outer" else (far, near)
+    faces = [*top.faces, *(TopoDS.Face_s(face.Reversed()) for face in bottom.faces), *_walls(own, top, bottom)]
+    shell = shell_of(faces)
     shell.Closed(True)
     solid = TopoDS_Solid()
     _BUILDER.MakeSolid(solid)
     _BUILDER.Add(solid, shell)
-    return solid
+    return BuiltPanel(straightened=straightened, skin=shell_of(near.faces), solid=solid)
 
 
 def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:

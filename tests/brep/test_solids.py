@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.inspection import inspect
 from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_solid, volume_of
+from cadpanel.brep.solid import build_panel, build_solid, volume_of
 from cadpanel.errors import PanelError
 from cadpanel.geometry.buildable import SkinSide
 from cadpanel.geometry.shape import ConePatch
@@ -116,6 +116,17 @@ def test_the_skin_is_the_outer_or_the_inner_face_of_the_sheet():
         for corners in (shape.corners(), shape.offset(distance).corners()):
             apart = np.linalg.norm(vertices[:, None] - corners.reshape(1, -1, 3), axis=-1).min(axis=0)
             assert apart.max() < 1e-9
+
+
+@pytest.mark.parametrize("skin_side", ["outer", "inner"])
+def test_skin_and_sheet_built_at_once_are_those_built_alone(skin_side):
+    shape = random_panel(6, half_angle=1e-6)
+    built = build_panel(shape, 3.0, skin_side)
+    assert built.straightened.patches == (1,)
+    assert exactly_valid(built.skin)
+    assert exactly_valid(built.solid)
+    assert inspect("p", built.skin).vertices == pytest.approx(inspect("p", build_skin(shape)).vertices)
+    assert volume_of(built.solid) == pytest.approx(volume_of(build_solid(shape, 3.0, skin_side)), rel=1e-14)
 
 
 def test_what_cannot_be_built_is_refused_by_name():

@@ -175,7 +175,8 @@ def _overhang(problem: Problem, reference: Reference, state: State) -> Array:
 
 
 def _to_world(problem: Problem, points: Array) -> Array:
-    return np.einsum("pqa,pxa->pqx", points, problem.place.axes) + problem.place.origins[:, None]
+    world: Array = np.einsum("pqa,pxa->pqx", points, problem.place.axes) + problem.place.origins[:, None]
+    return world
 
 
 def _polyline_distance(points: Array, line: Array) -> Array:

@@ -114,7 +114,7 @@ def _concurrent(problem: Problem, start: Array, settings: FitSettings, progress:
     corners = problem.corner_gap(settings.gap_tolerance * (1.0 - _MARGIN))
     arcs = problem.arc_gap(settings.gap_tolerance * (1.0 - _MARGIN))
     limits = problem.drift_limits(settings, _MARGIN)
-    held = [corners, arcs, *limits]
+    held: list[CornerGap | ArcGap | DriftLimit] = [corners, arcs, *limits]
     model = Objective(problem, [problem.deviation, *held], coupled=True)
     found = _balance(problem, model, held, start, lambda unknowns: unknowns, progress)
     iterations = found.iterations
@@ -174,7 +174,11 @@ def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     if settings.weights is not None:
         return float(weighted_objective(problem, settings.weights).cost(unknowns).sum())
     state = problem.state(unknowns)
-    held = [problem.corner_gap(settings.gap_tolerance), problem.arc_gap(settings.gap_tolerance)]
-    excess = max(term.hold.excess(term.vectors(state)) for term in [*held, *problem.drift_limits(settings, 0.0)])
+    held: list[CornerGap | ArcGap | DriftLimit] = [
+        problem.corner_gap(settings.gap_tolerance),
+        problem.arc_gap(settings.gap_tolerance),
+        *problem.drift_limits(settings, 0.0),
+    ]
+    excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = float(np.sqrt(2.0 * problem.deviation.cost(state).sum() / problem.panels))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -17,6 +17,7 @@ from cadpanel.geometry.frames import cross, dot
 from cadpanel.reference.model import Reference
 
 Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 # Share of the fold over which normals have turned where a flange ends and where the blend's middle begins.
 _FLANGE_SHARE = 0.15
@@ -147,8 +148,9 @@ def _roll(
     extent = np.ptp(z, axis=1) * (1.0 + 1.0 / np.sqrt(np.maximum(1, z.shape[1])))
     arc = (1.0 - 2.0 * _BLEND_SHARE) * angle
 
-    def radius_over(half: Array, length: Array) -> Array:
-        return np.sum(samples.weights * (middle & half), axis=1) / (arc * length)
+    def radius_over(half: BoolArray, length: Array) -> Array:
+        radii: Array = np.sum(samples.weights * (middle & half), axis=1) / (arc * length)
+        return radii
 
     before, after = radius_over(z < 0, 0.5 * extent), radius_over(z >= 0, 0.5 * extent)
     radius = np.maximum(0.5 * (before + after), 1e-3 * extent)
@@ -202,7 +204,8 @@ def _lay_cuts(reference: Reference, feature: Feature, start_: Start) -> None:
 
 def _local(points: Array, start_: Start) -> Array:
     shifted = points - start_.origins[:, None, None]
-    return np.einsum("pesx,pxa->pesa", shifted, start_.axes) / start_.length
+    local: Array = np.einsum("pesx,pxa->pesa", shifted, start_.axes) / start_.length
+    return local
 
 
 def _mean_normal(samples: SampleArrays, weights: Array, otherwise: Array) -> Array:
@@ -212,11 +215,13 @@ def _mean_normal(samples: SampleArrays, weights: Array, otherwise: Array) -> Arr
 
 
 def _weighted_mean(points: Array, weights: Array) -> Array:
-    return np.einsum("pm,pmx->px", weights, points) / np.maximum(weights.sum(axis=1), _LEAST_WEIGHT)[:, None]
+    mean: Array = np.einsum("pm,pmx->px", weights, points) / np.maximum(weights.sum(axis=1), _LEAST_WEIGHT)[:, None]
+    return mean
 
 
 def _along(vectors: Array, direction: Array) -> Array:
-    return np.einsum("pmx,px->pm", vectors, direction)
+    components: Array = np.einsum("pmx,px->pm", vectors, direction)
+    return components
 
 
 def _off(vectors: Array, direction: Array) -> Array:
@@ -224,4 +229,5 @@ def _off(vectors: Array, direction: Array) -> Array:
 
 
 def _unit(vectors: Array) -> Array:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-
 Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 # The eight numbers that a patch's distance depends on: the twist of its ruling (6), normal radius, half angle.
 INNER = 8
@@ -22,7 +22,8 @@ def plane_distance(x: Array, p: Array, n: Array) -> Array:
     """Signed distance of x (3, panels, m) to the planes through p with normals n, both (panels, 3)."""
     px, py, pz = (p[:, i, None] for i in range(3))
     nx, ny, nz = (n[:, i, None] for i in range(3))
-    return (x[0] - px) * nx + (x[1] - py) * ny + (x[2] - pz) * nz
+    distance: Array = (x[0] - px) * nx + (x[1] - py) * ny + (x[2] - pz) * nz
+    return distance
 
 
 def plane_inner(x: Array, n: Array) -> Array:
@@ -88,7 +89,7 @@ def _inner(x: Array, ex: Array, ey: Array, ez: Array, by_radius: Array | float, 
     return inner
 
 
-def beyond(x: Array, p: Array, b: Array) -> Array:
+def beyond(x: Array, p: Array, b: Array) -> BoolArray:
     """Whether x (3, panels, m) lies on the +b side of rulings; p, b (panels, 3). Returns booleans (panels, m).
 
     The plane spanned by a ruling and the skin's normal there is where the nearest patch changes from one to the next.

@@ -62,7 +62,7 @@ def rotate_about(axis: Array, angle: Array, vector: Array) -> Array:
 
 
 def rotation_twist(axis: Array, point: Array) -> Array:
-    """(..., 6) the twist (omega, v) of a unit-rate rotation about a line through `point` along `axis`, both (..., 3)."""
+    """(..., 6) the twist (omega, v) of a unit-rate rotation about the line through `point` along `axis` (..., 3)."""
     return np.concatenate([axis, cross(point, axis)], axis=-1)
 
 

@@ -49,7 +49,7 @@ class EndCurves:
     @property
     def patches(self) -> int:
         """Patches along a curve."""
-        return self.radius.shape[1]
+        return int(self.radius.shape[1])
 
     def follow(self, u: Array) -> tuple[Array, Array]:
         """Points and the skin's normals (s, q, 3) at the parameters u (s, q) in [0, k]."""

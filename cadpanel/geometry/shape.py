@@ -80,7 +80,8 @@ class PanelShape:
         to_plane = self.cut_points[:, None, :] - self.points[None, :, :]
         height = np.einsum("erx,ex->er", to_plane, self.cut_normals)
         rate = np.einsum("rx,ex->er", self.directions, self.cut_normals)
-        return self.points + (height / rate)[..., None] * self.directions
+        corners: Array = self.points + (height / rate)[..., None] * self.directions
+        return corners
 
     def binormals(self) -> Array:
         """(k + 1, 3) unit b = t x n, the way the walk goes."""

@@ -1,8 +1,8 @@
 """Symmetric block matrices of a Gauss-Newton model, and their direct factorization.
 
 Unknowns come in `count` blocks of `size`; a pair of blocks is coupled where some residual sees both. Strips couple
-neighbours only, rings and grids a little more. Blocks are reordered by reverse Cuthill-McKee and the matrix is factorized
-as a band (LAPACK pbtrf), which is linear in the length of a strip.
+neighbours only, rings and grids a little more. Blocks are reordered by reverse Cuthill-McKee and the matrix is
+factorized as a band (LAPACK pbtrf), which is linear in the length of a strip.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Vectors that are to stay within a distance: a tolerance in millimetres instead of a weight.
 
-At the smallest cost under |v_k| <= tau_k the pull on each vector points along the vector itself, so the solution is that
-of a plain weighted least squares problem, cost + sum of w_k |v_k|^2 / 2, for the right weights w_k >= 0, where w_k = 0
-unless |v_k| = tau_k (the Karush-Kuhn-Tucker conditions). The weights are found by multiplication: a vector that is too
-long gets a larger weight, one that is short a smaller one. Every inner problem is smooth, and no weight ever becomes
-larger than the tolerance asks for.
+At the smallest cost under |v_k| <= tau_k the pull on each vector points along the vector itself, so the solution is
+that of a plain weighted least squares problem, cost + sum of w_k |v_k|^2 / 2, for the right weights w_k >= 0, where
+w_k = 0 unless |v_k| = tau_k (the Karush-Kuhn-Tucker conditions). The weights are found by multiplication: a vector that
+is too long gets a larger weight, one that is short a smaller one. Every inner problem is smooth, and no weight ever
+becomes larger than the tolerance asks for.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ class Hold:
 
     def roots(self) -> Array:
         """(groups, vectors) square roots of the weights: the residual of a vector is its root times the vector."""
-        return np.sqrt(self.weight)
+        roots: Array = np.sqrt(self.weight)
+        return roots
 
     def excess(self, vectors: Array) -> float:
         """The largest |v| / tau."""

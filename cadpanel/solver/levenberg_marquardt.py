@@ -87,7 +87,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
     component, count = pattern.component, pattern.components
 
     def per_component(values: Array) -> Array:
-        return np.bincount(component, values, minlength=count)
+        return np.bincount(component, values, minlength=count).astype(np.float64, copy=False)
 
     unknowns = start.copy()
     booked, normal = model.linearize(unknowns)

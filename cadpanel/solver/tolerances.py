@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -41,7 +41,7 @@ class Schedule:
     close: int = 40
     steady: float = 2e-3
     slack: float = 1e-3
-    inner: Stopping = Stopping(cost=1e-4, iterations=10)
+    inner: Stopping = field(default_factory=lambda: Stopping(cost=1e-4, iterations=10))
 
 
 @dataclass(frozen=True, slots=True)

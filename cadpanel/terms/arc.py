@@ -133,4 +133,5 @@ class ArcGap:
             raise ValueError("the state was walked without derivatives")
         first, second = self.seams.panels.T
         turn = np.swapaxes(self.place.axes[second], 1, 2) @ self.place.axes[first]
-        return turn[:, None] @ state.arcs.jacobian[first, self.seams.ends[:, 0]][:, meeting.own]
+        moved: Array = turn[:, None] @ state.arcs.jacobian[first, self.seams.ends[:, 0]][:, meeting.own]
+        return moved

@@ -181,7 +181,8 @@ def patch_outer(walked: Walk, panels: IntArray, patch: IntArray, start: IntArray
 
     Args:
         walked: the panels, walked with derivatives.
-        panels, patch: (groups,) which panel, and which of its patches.
+        panels: (groups,) which panel.
+        patch: (groups,) which of its patches.
         start: (groups,) where the patch's radius stands among the numbers (its half angle follows), None for planes.
     """
     if walked.carriers.twist is None:

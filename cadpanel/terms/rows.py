@@ -73,7 +73,8 @@ def add_rows(rows: list[Rows], normal: Normal, panels: int) -> Array:
 
 def booked_cost(residual: Array, panels: IntArray, count: int) -> Array:
     """(count,) half the squares of `residual` (groups, q), booked on `panels` (groups,)."""
-    return np.bincount(panels, 0.5 * np.einsum("gq,gq->g", residual, residual), minlength=count)
+    half_squares = 0.5 * np.einsum("gq,gq->g", residual, residual)
+    return np.bincount(panels, half_squares, minlength=count).astype(np.float64, copy=False)
 
 
 def scatter_add(target: Array, index: IntArray, values: Array) -> None:
@@ -83,4 +84,5 @@ def scatter_add(target: Array, index: IntArray, values: Array) -> None:
         return
     groups = len(index)
     gather = csr_array((np.ones(groups), (index, np.arange(groups))), shape=(len(target), groups))
-    target += (gather @ values.reshape(groups, -1)).reshape(target.shape)
+    summed: Array = np.asarray(gather @ values.reshape(groups, -1))
+    target += summed.reshape(target.shape)

@@ -58,7 +58,7 @@ class ArcGap:
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
         residual = self.hold.roots()[..., None] * self.vectors(state)
-        return booked_cost(residual.reshape(len(residual), -1), self.seams.panels[:, 0], len(self.place.origins))
+        return booked_cost(residual, self.seams.panels[:, 0], len(self.place.origins))
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,7 +59,7 @@ class Placement:
     def to_world(self, points: Array, panels: IntArray | slice = slice(None)) -> Array:
         """Points (panels, ..., 3) of the panels' own frames, in units of `length` from the common origin."""
         axes, origins = self.axes[panels], self.origins[panels] / self.length
-        flat = points.reshape(len(points), -1, 3)
+        flat = points.reshape(len(points), math.prod(points.shape[1:-1]), 3)
         return (flat @ np.swapaxes(axes, 1, 2) + origins[:, None, :]).reshape(points.shape)
 
 
@@ -77,17 +78,19 @@ class CornerGap:
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
         residual = self.hold.roots()[..., None] * self.vectors(state)
-        return booked_cost(residual.reshape(len(residual), -1), self.seams.panels[:, 0], len(self.place.origins))
+        return booked_cost(residual, self.seams.panels[:, 0], len(self.place.origins))
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
+        groups = len(self.seams.panels)
+        if not groups:
+            return []
         roots = self.hold.roots()[..., None]
-        residual = roots * self.vectors(state)
-        groups = len(residual)
+        residual = (roots * self.vectors(state)).reshape(groups, -1)
         jacobians = (roots[..., None] * self._jacobian(state, 0), -roots[..., None] * self._jacobian(state, 1))
-        flat = tuple(part.reshape(groups, residual[0].size, -1) for part in jacobians) if groups else jacobians
+        flat = tuple(part.reshape(*residual.shape, -1) for part in jacobians)
         panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
-        return [Rows(residual.reshape(groups, -1), panels, flat, self.seams.pair)] if groups else []
+        return [Rows(residual, panels, flat, self.seams.pair)]
 
     def add_to(self, normal: Normal, state: State) -> Array:
         """See `Term.add_to`."""

@@ -72,8 +72,8 @@ def add_rows(rows: list[Rows], normal: Normal, panels: int) -> Array:
 
 
 def booked_cost(residual: Array, panels: IntArray, count: int) -> Array:
-    """(count,) half the squares of `residual` (groups, q), booked on `panels` (groups,)."""
-    half_squares = 0.5 * np.einsum("gq,gq->g", residual, residual)
+    """(count,) half the squares of `residual` (groups, ...), booked on `panels` (groups,)."""
+    half_squares = 0.5 * np.sum(residual**2, axis=tuple(range(1, residual.ndim)))
     return np.bincount(panels, half_squares, minlength=count).astype(np.float64, copy=False)
 
 

@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 _ARC_POINTS = 24
 _NEWTON_STEPS = 6
 _DERIVATIVE_STEP = 1e-5
+# The widest place is looked for again between the points, on ever finer grids around the widest of them on each patch.
+_REFINEMENTS = 3
+_GRID = np.linspace(-1.0, 1.0, 9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +112,23 @@ def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:
         distance, u = closest(other, points)
         facing = other.follow(u)[1]
         angle = np.arctan2(np.linalg.norm(cross(normals, facing), axis=-1), dot(normals, facing))
-        gap = np.maximum(gap, distance.max(axis=1))
+        gap = np.maximum(gap, _widest(one, other, stations, distance))
         kink = np.maximum(kink, angle.max(axis=1))
     return gap, kink
+
+
+def _widest(one: EndCurves, other: EndCurves, stations: Array, distance: Array) -> Array:
+    """(s,) the largest distance of `one` from `other`, found from the distances (s, q) at the stations (q,)."""
+    widest = distance.max(axis=1)
+    patch = np.minimum(stations.astype(np.intp), one.patches - 1)
+    lows = np.arange(one.patches, dtype=float)[None, :, None]
+    peak = np.stack([stations[patch == i][distance[:, patch == i].argmax(axis=1)] for i in range(one.patches)], axis=1)
+    step = np.array([np.diff(stations, append=one.patches)[patch == i].max() for i in range(one.patches)])
+    for _ in range(_REFINEMENTS):
+        grid = np.clip(peak[..., None] + step[:, None] * _GRID, lows, lows + 1.0)
+        near, _ = closest(other, one.follow(grid.reshape(len(grid), -1))[0])
+        near = near.reshape(grid.shape)
+        peak = np.take_along_axis(grid, near.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        widest = np.maximum(widest, near.max(axis=(1, 2)))
+        step = step / 4.0
+    return widest

@@ -3,6 +3,8 @@
 The message is one sentence for the person at the desk: what, where (file, panel), how much, and what to do about it.
 """
 
+from collections.abc import Sequence
+
 
 class CadpanelError(Exception):
     """Base class of all errors that cadpanel raises on purpose."""
@@ -32,3 +34,15 @@ class SettingsError(CadpanelError, ValueError):
 
 class DeliveryError(CadpanelError, OSError):
     """A delivery folder cannot be written or read."""
+
+
+class ProofError(CadpanelError):
+    """What was written and read back is not what was promised; nothing is delivered.
+
+    Attributes:
+        failures: everything that does not hold, one sentence each, naming the panel or the seam.
+    """
+
+    def __init__(self, failures: Sequence[str]) -> None:
+        super().__init__(" ".join(failures))
+        self.failures = tuple(failures)

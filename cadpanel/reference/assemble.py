@@ -40,7 +40,7 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
     refuse_duplicates(panels, source, seam_tolerance)
     seams = find_seams(panels, source, seam_tolerance)
     aligned, seams = align(panels, seams, seam_tolerance)
-    return Reference(source=source, panels=aligned, seams=seams)
+    return Reference(source=source, panels=aligned, seams=seams, seam_tolerance=seam_tolerance)
 
 
 def _panel(raw: RawPanel, source: str) -> PanelReference:

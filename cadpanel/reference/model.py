@@ -93,8 +93,16 @@ class Seam:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """All panels of one reference and the seams between them, found by geometry."""
+    """All panels of one reference and the seams between them, found by geometry.
+
+    Attributes:
+        source: name of the file.
+        panels: in the order of the file.
+        seams: which panels meet, end to end.
+        seam_tolerance: how far the ends of two panels that meet were allowed to lie apart, mm.
+    """
 
     source: str
     panels: tuple[PanelReference, ...]
     seams: tuple[Seam, ...]
+    seam_tolerance: float = 1.0

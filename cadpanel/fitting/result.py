@@ -119,7 +119,7 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
         measures=measures,
         local=measure(posed, reference, local.unknowns),
         two_stage=measure(posed, reference, staged.unknowns),
-        tolerance_met=_met(measures, how),
+        tolerance_met=keeps_limits(measures, how),
         starts=chosen.starts,
         agreed=chosen.agreed,
         iterations=chosen.iterations,
@@ -135,7 +135,8 @@ def pose(reference: Reference, settings: FitSettings) -> tuple[Problem, Array]:
     return problem(reference, feature, samples, begin), begin.values[:, feature.free]
 
 
-def _met(measures: Measures, settings: FitSettings) -> bool:
+def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
+    """Whether every gap is within the tolerance and every drift within its limit; with weights there is none to miss."""
     if settings.weights is not None:
         return True
     lengths = measures.lengths[:, None, None]

@@ -88,7 +88,8 @@ def closest(curves: EndCurves, points: Array) -> tuple[Array, Array]:
     u_all = np.broadcast_to(stations, (len(points), len(stations)))
     on_curve, _ = curves.follow(u_all)
     square = np.sum((points[:, :, None] - on_curve[:, None]) ** 2, axis=-1)
-    u = stations[np.argmin(square, axis=2)]
+    nearest = stations[np.argmin(square, axis=2)]
+    u = nearest
     top = float(curves.patches)
     for _ in range(_NEWTON_STEPS):
         low, high = np.clip(u - _DERIVATIVE_STEP, 0.0, top), np.clip(u + _DERIVATIVE_STEP, 0.0, top)
@@ -96,8 +97,9 @@ def closest(curves: EndCurves, points: Array) -> tuple[Array, Array]:
         rate = (curves.follow(high)[0] - curves.follow(low)[0]) / (high - low)[..., None]
         u = np.clip(u - dot(here - points, rate) / np.maximum(dot(rate, rate), np.finfo(float).tiny), 0.0, top)
     # A station that was closer than where the iteration went keeps its place.
-    refined = np.linalg.norm(curves.follow(u)[0] - points, axis=-1)
-    return np.minimum(refined, np.sqrt(square.min(axis=2))), u
+    distance, refined = np.sqrt(square.min(axis=2)), np.linalg.norm(curves.follow(u)[0] - points, axis=-1)
+    closer = refined <= distance
+    return np.where(closer, refined, distance), np.where(closer, u, nearest)
 
 
 def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:

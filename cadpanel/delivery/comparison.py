@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from cadpanel.delivery.jsonfile import NonNegative, Record, read_json, write_json
-from cadpanel.delivery.report import ReferenceModel, SummaryModel, UnitsModel
+from cadpanel.delivery.report import NonNegativeCount, ReferenceModel, SummaryModel, UnitsModel, WeightsModel
 
 
 class ColumnModel(Record):
@@ -19,14 +19,30 @@ class ColumnModel(Record):
         method: name of the method.
         max_corner_gap: largest corner gap of each seam, in the order of the file's seams, mm.
         summary: the measures of the whole fit.
-        seconds: wall-clock time of the fit.
+        local_rms_deviation: RMS deviation of the same feature where each panel is fitted alone, mm.
+        seconds: wall-clock time of the fit, the methods that it starts from and is held against included.
     """
 
     feature: str
     method: str
     max_corner_gap: tuple[NonNegative, ...]
     summary: SummaryModel
+    local_rms_deviation: NonNegative
     seconds: NonNegative
+
+
+class ComparisonSettingsModel(Record):
+    """What all columns were fitted under; see the report's settings."""
+
+    cadpanel_version: str
+    tilt: Literal["free", "fixed"]
+    gap_tolerance: NonNegative | None
+    drift_along: NonNegative
+    drift_across: NonNegative
+    weights: WeightsModel | None
+    restarts: NonNegativeCount
+    seed: int
+    seam_tolerance: NonNegative
 
 
 class ComparisonModel(Record):
@@ -35,6 +51,7 @@ class ComparisonModel(Record):
     schema_name: Literal["cadpanel.compare/1"] = Field(default="cadpanel.compare/1", alias="schema")
     units: UnitsModel = UnitsModel()
     reference: ReferenceModel
+    settings: ComparisonSettingsModel
     seams: tuple[tuple[str, str], ...]
     columns: tuple[ColumnModel, ...]
 

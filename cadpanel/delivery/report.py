@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from cadpanel.delivery.jsonfile import NonNegative, Record, Vector, read_json, write_json
+from cadpanel.delivery.patch_records import PatchModel
 
 NonNegativeCount = Annotated[int, Field(ge=0)]
 End = Literal[0, 1]
@@ -32,73 +33,62 @@ class ReferenceModel(Record):
     seams: NonNegativeCount
 
 
+class WeightsModel(Record):
+    """Weights of the paper's objective, where they were asked for instead of a tolerance."""
+
+    gap: NonNegative
+    deviation: NonNegative
+    drift: NonNegative
+
+
 class SettingsModel(Record):
     """Everything that is needed to run the fit again; more settings may be added as further keys.
 
     Attributes:
+        cadpanel_version: of the program that wrote the delivery.
         feature: name of the shape feature.
+        tilt: "free" where cut planes may tilt, "fixed" where they stand upright.
         method: name of the method.
         gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
-        thickness: of the sheet, mm.
+        drift_along: how far a corner might move along its free edge, a share of the panel's length.
+        drift_across: the same across its free edge.
+        weights: the weights, or None where a tolerance was held.
+        restarts: further starts.
         seed: of the random numbers.
+        seam_tolerance: how far the ends of two panels that meet might lie apart in the reference, mm.
+        thickness: of the sheet, mm.
+        skin_side: "outer" where the skin is the sheet's outer face.
+        step_schema: of the STEP files.
     """
 
+    cadpanel_version: str
     feature: str
+    tilt: Literal["free", "fixed"]
     method: str
     gap_tolerance: Annotated[float, Field(gt=0.0)] | None
-    thickness: NonNegative
+    drift_along: NonNegative
+    drift_across: NonNegative
+    weights: WeightsModel | None
+    restarts: NonNegativeCount
     seed: int
+    seam_tolerance: NonNegative
+    thickness: NonNegative
+    skin_side: Literal["outer", "inner"]
+    step_schema: Literal["AP242", "AP214"]
 
 
-class PlanePatchModel(Record):
-    """A flat patch: its outward unit normal and a point on it, mm."""
-
-    kind: Literal["plane"] = "plane"
-    normal: Vector
-    point: Vector
-
-
-class ConePatchModel(Record):
-    """A conical patch.
+class SolveModel(Record):
+    """How the result was reached.
 
     Attributes:
-        apex: mm.
-        axis: unit vector, from the apex towards the patch.
-        half_angle: degrees.
-        radius_min: smallest distance of the trimmed patch from its axis, mm.
-        radius_max: largest distance, mm.
-        sweep: angle between the two rulings about the axis, degrees.
+        iterations: linear systems solved.
+        starts: how many starts were made.
+        agreed: how many of them ended within 1 % of the best.
     """
 
-    kind: Literal["cone"] = "cone"
-    apex: Vector
-    axis: Vector
-    half_angle: Annotated[float, Field(gt=0.0, lt=90.0)]
-    radius_min: NonNegative
-    radius_max: NonNegative
-    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
-
-
-class CylinderPatchModel(Record):
-    """A cylindrical patch.
-
-    Attributes:
-        axis: unit vector.
-        axis_point: a point on the axis, mm.
-        radius_min: the radius, mm.
-        radius_max: the radius again, so that readers need not tell cones from cylinders.
-        sweep: angle between the two rulings about the axis, degrees.
-    """
-
-    kind: Literal["cylinder"] = "cylinder"
-    axis: Vector
-    axis_point: Vector
-    radius_min: NonNegative
-    radius_max: NonNegative
-    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
-
-
-PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]
+    iterations: NonNegativeCount
+    starts: NonNegativeCount
+    agreed: NonNegativeCount
 
 
 class PanelModel(Record):
@@ -108,13 +98,16 @@ class PanelModel(Record):
         name: the panel's stable name.
         feature: name of its shape feature.
         rms_deviation: root mean square distance of the reference's samples to their patches, mm.
-        max_deviation: largest such distance, mm.
+        max_deviation: largest distance of the reference, its outline included, to the patches, mm.
+        hausdorff: two-sided distance between the trimmed skin and the reference, mm.
         max_corner_drift: largest distance of a corner from its reference corner, mm.
         max_drift_along: the same, counted along the strip only, mm.
         max_free_edge_drift: the same, counted across the free edges only, mm.
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
-        patches: in the order of the walk across the panel.
+        corners: of the skin as it is built, [end][ruling], mm; by them the files are held against the report.
+        patches: in the order of the walk across the panel, as they are built.
+        moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
         notes: what the fabricator should know, one sentence each.
     """
 
@@ -122,12 +115,15 @@ class PanelModel(Record):
     feature: str
     rms_deviation: NonNegative
     max_deviation: NonNegative
+    hausdorff: NonNegative
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
     area: NonNegative
     volume: NonNegative
+    corners: tuple[tuple[Vector, ...], tuple[Vector, ...]]
     patches: tuple[PatchModel, ...]
+    moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
 
 
@@ -137,6 +133,7 @@ class SeamModel(Record):
     Attributes:
         panels: the two names.
         ends: which end (0 or 1) of each panel lies on the seam.
+        reversed: whether the first corner of one panel meets the last corner of the other.
         corner_gaps: distance between corresponding corners, in the order of the first panel's walk, mm.
         max_corner_gap: the largest of them, mm.
         max_seam_gap: symmetric Hausdorff distance between the two end curves, mm.
@@ -145,6 +142,7 @@ class SeamModel(Record):
 
     panels: tuple[str, str]
     ends: tuple[End, End]
+    reversed: bool
     corner_gaps: tuple[NonNegative, ...]
     max_corner_gap: NonNegative
     max_seam_gap: NonNegative
@@ -159,12 +157,15 @@ class SummaryModel(Record):
         max_seam_gap: largest distance between two end curves, along the whole seam.
         max_kink: largest angle between two neighbouring skins' normals.
         rms_deviation: root mean square over all samples.
-        max_deviation: largest distance of a sample to its patch.
+        max_deviation: largest distance of the reference, its outline included, to the patches.
         hausdorff: two-sided distance between the trimmed skin and the reference.
         max_corner_drift: largest distance of a corner from its reference corner.
+        max_drift_along: the same, counted along the strip only.
         max_free_edge_drift: the same, counted across the free edges only.
+        drift_along_percent, drift_across_percent: the last two as the largest share of a panel's own length, percent.
         local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
-        tolerance_met: whether the gap tolerance holds at every seam.
+        tolerance_met: whether every gap is within the tolerance and every drift within its limit; always true where
+            weights ruled, which have no tolerance to miss.
     """
 
     max_corner_gap: NonNegative
@@ -174,7 +175,10 @@ class SummaryModel(Record):
     max_deviation: NonNegative
     hausdorff: NonNegative
     max_corner_drift: NonNegative
+    max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
+    drift_along_percent: NonNegative
+    drift_across_percent: NonNegative
     local_rms_multiple: NonNegative | None
     tolerance_met: bool
 
@@ -190,7 +194,8 @@ class CertificateModel(Record):
     """What reading panels.step and skins.step back showed.
 
     Attributes:
-        solids: how many were found.
+        solids: how many were found in panels.step.
+        skins: how many open shells were found in skins.step.
         valid: whether all of them pass the kernel's exact check and are closed.
         face_kinds: how many faces of each kind the panels' main faces are.
         max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
@@ -201,6 +206,7 @@ class CertificateModel(Record):
     """
 
     solids: NonNegativeCount
+    skins: NonNegativeCount
     valid: bool
     face_kinds: dict[str, NonNegativeCount]
     max_tangency_error: NonNegative
@@ -211,7 +217,7 @@ class CertificateModel(Record):
 
 
 class TimingModel(Record):
-    """Wall-clock seconds of each step."""
+    """Wall-clock seconds of each step; `read` is 0 where the reference was read before, in another program."""
 
     read: NonNegative
     fit: NonNegative
@@ -227,6 +233,7 @@ class ReportModel(Record):
     units: UnitsModel = UnitsModel()
     reference: ReferenceModel
     settings: SettingsModel
+    solve: SolveModel
     panels: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
     summary: SummaryModel

@@ -121,7 +121,7 @@ def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:
 
 def _widest(one: EndCurves, other: EndCurves, stations: Array, distance: Array) -> Array:
     """(s,) the largest distance of `one` from `other`, found from the distances (s, q) at the stations (q,)."""
-    widest = distance.max(axis=1)
+    widest: Array = distance.max(axis=1)
     patch = np.minimum(stations.astype(np.intp), one.patches - 1)
     lows = np.arange(one.patches, dtype=float)[None, :, None]
     peak = np.stack([stations[patch == i][distance[:, patch == i].argmax(axis=1)] for i in range(one.patches)], axis=1)

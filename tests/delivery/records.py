@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from cadpanel.delivery.comparison import ColumnModel, ComparisonModel
+from cadpanel.delivery.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel
+from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PlanePatchModel
 from cadpanel.delivery.report import (
     BaselinesModel,
     CertificateModel,
-    ConePatchModel,
-    CylinderPatchModel,
     PanelModel,
-    PlanePatchModel,
     ReferenceModel,
     ReportModel,
     SeamModel,
     SettingsModel,
+    SolveModel,
     SummaryModel,
     TimingModel,
 )
@@ -26,7 +25,10 @@ SUMMARY = SummaryModel(
     max_deviation=30.0,
     hausdorff=31.0,
     max_corner_drift=100.0,
+    max_drift_along=95.0,
     max_free_edge_drift=30.0,
+    drift_along_percent=4.75,
+    drift_across_percent=1.5,
     local_rms_multiple=1.6,
     tolerance_met=True,
 )
@@ -40,11 +42,13 @@ def a_panel(name: str) -> PanelModel:
         feature="plane-cone-plane",
         rms_deviation=9.0,
         max_deviation=30.0,
+        hausdorff=31.0,
         max_corner_drift=100.0,
         max_drift_along=95.0,
         max_free_edge_drift=30.0,
         area=2.5e6,
         volume=7.5e6,
+        corners=(tuple((100.0 * i, 0.0, 0.0) for i in range(4)), tuple((100.0 * i, 2000.0, 0.0) for i in range(4))),
         patches=(
             PlanePatchModel(normal=(0.0, 0.0, 1.0), point=(0.0, 0.0, 0.0)),
             ConePatchModel(
@@ -67,13 +71,28 @@ def a_report() -> ReportModel:
     return ReportModel(
         reference=REFERENCE,
         settings=SettingsModel(
-            feature="plane-cone-plane", method="concurrent", gap_tolerance=1.0, thickness=3.0, seed=0
+            cadpanel_version="0.1.0",
+            feature="plane-cone-plane",
+            tilt="free",
+            method="concurrent",
+            gap_tolerance=1.0,
+            drift_along=0.05,
+            drift_across=0.02,
+            weights=None,
+            restarts=0,
+            seed=0,
+            seam_tolerance=1.0,
+            thickness=3.0,
+            skin_side="outer",
+            step_schema="AP242",
         ),
+        solve=SolveModel(iterations=100, starts=1, agreed=1),
         panels=(a_panel("Süd 1"), a_panel("Süd 2")),
         seams=(
             SeamModel(
                 panels=("Süd 1", "Süd 2"),
                 ends=(1, 0),
+                reversed=False,
                 corner_gaps=(0.1, 0.05, 0.05, 0.1),
                 max_corner_gap=0.1,
                 max_seam_gap=0.2,
@@ -84,6 +103,7 @@ def a_report() -> ReportModel:
         baselines=BaselinesModel(local=SUMMARY, two_stage=SUMMARY),
         certificate=CertificateModel(
             solids=2,
+            skins=2,
             valid=True,
             face_kinds={"plane": 4, "cone": 2},
             max_tangency_error=5e-13,
@@ -98,9 +118,27 @@ def a_report() -> ReportModel:
 def a_comparison() -> ComparisonModel:
     return ComparisonModel(
         reference=REFERENCE,
+        settings=ComparisonSettingsModel(
+            cadpanel_version="0.1.0",
+            tilt="free",
+            gap_tolerance=1.0,
+            drift_along=0.05,
+            drift_across=0.02,
+            weights=None,
+            restarts=0,
+            seed=0,
+            seam_tolerance=1.0,
+        ),
         seams=(("Süd 1", "Süd 2"),),
         columns=tuple(
-            ColumnModel(feature=feature, method=method, max_corner_gap=(0.1,), summary=SUMMARY, seconds=0.2)
+            ColumnModel(
+                feature=feature,
+                method=method,
+                max_corner_gap=(0.1,),
+                summary=SUMMARY,
+                local_rms_deviation=5.6,
+                seconds=0.2,
+            )
             for method in ("two_stage", "concurrent")
             for feature in ("plane-cylinder-plane", "plane-cone-plane")
         ),

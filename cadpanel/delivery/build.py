@@ -1,0 +1,80 @@
+"""From fitted panels to exact solids and skins, with what the report says of each. Nothing is written here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from cadpanel.brep.skin import build_skin
+from cadpanel.brep.solid import build_solid
+from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.volume import sheet_volume, skin_area
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
+
+# What is going on, how much of it is done, and of how much.
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuiltPanel:
+    """A panel as an exact solid, and the formula's numbers to hold it against.
+
+    Attributes:
+        shape: the panel as it is built: a cone that is all but a cylinder has become one.
+        solid: the sheet.
+        skin: the open shell that approximates the reference.
+        area: of the skin, mm^2.
+        volume: of the sheet, mm^3.
+        moved: how far the farthest corner lies from where the fit had it, mm.
+        notes: what the fabricator should know, one sentence each.
+    """
+
+    shape: PanelShape
+    solid: TopoDS_Solid
+    skin: TopoDS_Shell
+    area: float
+    volume: float
+    moved: float
+    notes: tuple[str, ...]
+
+
+def build_panels(
+    shapes: Sequence[PanelShape], sheet: SheetSettings, progress: Progress | None = None
+) -> tuple[BuiltPanel, ...]:
+    """Build the sheet and the skin of every panel.
+
+    Raises:
+        PanelError: a panel cannot be built; the message names it, the reason and the remedy.
+    """
+    return tuple(_each(shapes, sheet, progress))
+
+
+def _each(shapes: Sequence[PanelShape], sheet: SheetSettings, progress: Progress | None) -> Iterator[BuiltPanel]:
+    for done, shape in enumerate(shapes):
+        if progress is not None:
+            progress("build", done, len(shapes))
+        yield _build(shape, sheet)
+
+
+def _build(shape: PanelShape, sheet: SheetSettings) -> BuiltPanel:
+    solid = build_solid(shape, sheet.thickness, sheet.skin_side)
+    straight = straighten(shape)
+    notes = tuple(
+        f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
+        f"no corner moves by more than {straight.largest_move:.2g} mm."
+        for index in straight.patches
+    )
+    return BuiltPanel(
+        shape=straight.shape,
+        solid=solid,
+        skin=build_skin(shape),
+        area=skin_area(straight.shape),
+        volume=sheet_volume(straight.shape, sheet.thickness, sheet.skin_side),
+        moved=straight.largest_move,
+        notes=notes,
+    )

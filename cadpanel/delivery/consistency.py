@@ -1,0 +1,129 @@
+"""Does a report agree with itself? Everything in it that follows from other numbers in it is worked out again.
+
+What needs the reference (deviation, Hausdorff distance, drift) cannot be checked from a delivery alone; that the
+summary is the worst of its panels and seams can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PatchModel
+from cadpanel.delivery.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
+from cadpanel.geometry.shape import Array
+
+SAME_LENGTH = 1e-6
+"""Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
+ON_PATCH = 1e-5
+"""Distance in mm of a corner from the patches that meet there."""
+
+
+def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[str, ...]:
+    """One sentence for everything in a report that does not follow from the rest of it, or from its files.
+
+    Args:
+        report: what was read.
+        certificate: what the files beside it show now.
+    """
+    panels = {panel.name: panel for panel in report.panels}
+    failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
+    failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
+    failures += _summary_faults(report)
+    failures += _certificate_faults(report.certificate, certificate)
+    return tuple(failures)
+
+
+def _patch_faults(panel: PanelModel) -> Iterator[str]:
+    corners = np.array(panel.corners)
+    if corners.shape[1] != len(panel.patches) + 1:
+        yield f"Panel '{panel.name}': the report has {corners.shape[1]} corners at an end for its patches."
+        return
+    for index, patch in enumerate(panel.patches):
+        off = float(np.abs(_distance(patch, corners[:, index : index + 2].reshape(-1, 3))).max())
+        if not off <= ON_PATCH:
+            yield (
+                f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) passes its corners "
+                f"at {off:.3g} mm."
+            )
+
+
+def _distance(patch: PatchModel, points: Array) -> Array:
+    """(m,) signed distances of points (m, 3) to a patch's surface, and beyond the radii that are stated for it, mm."""
+    if not isinstance(patch, ConePatchModel | CylinderPatchModel):
+        return np.asarray((points - np.array(patch.point)) @ np.array(patch.normal))
+    offset = points - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
+    axis = np.array(patch.axis)
+    height = offset @ axis
+    radius = np.linalg.norm(offset - height[:, None] * axis, axis=-1)
+    beyond = np.maximum(np.maximum(patch.radius_min - radius, radius - patch.radius_max), 0.0)
+    if isinstance(patch, ConePatchModel):
+        angle = np.radians(patch.half_angle)
+        return np.maximum(np.abs(radius * np.cos(angle) - height * np.sin(angle)), beyond)
+    return np.maximum(np.abs(radius - patch.radius_max), beyond)
+
+
+def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str]:
+    first, second = (np.array(panels[name].corners[end]) for name, end in zip(seam.panels, seam.ends, strict=True))
+    name = f"Seam '{seam.panels[0]}' to '{seam.panels[1]}'"
+    gaps = np.array(seam.corner_gaps)
+    if not first.shape == second.shape == (len(gaps), 3):
+        yield f"{name}: the report has {len(gaps)} corner gaps for {len(first)} and {len(second)} corners."
+        return
+    measured = np.linalg.norm(first - (second[::-1] if seam.reversed else second), axis=-1)
+    moved = sum(panels[name].moved for name in seam.panels)
+    off = float(np.abs(measured - gaps).max())
+    if not off <= SAME_LENGTH + moved:
+        yield f"{name}: the corner gaps in the report are off by {off:.3g} mm from its panels' corners."
+    if seam.max_corner_gap != gaps.max():
+        yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
+
+
+def _summary_faults(report: ReportModel) -> Iterator[str]:
+    summary = report.summary
+    worst: dict[str, float] = {
+        key: max((of(seam) for seam in report.seams), default=0.0) for key, of in _OF_SEAMS.items()
+    }
+    worst |= {key: max((of(panel) for panel in report.panels), default=0.0) for key, of in _OF_PANELS.items()}
+    for key, value in worst.items():
+        stated = float(getattr(summary, key))
+        if not abs(stated - value) <= SAME_LENGTH:
+            yield f"The summary's {key} is {stated:.6g}, the worst in the list is {value:.6g}."
+    yield from _tolerance_faults(report, summary)
+
+
+_OF_SEAMS: dict[str, Callable[[SeamModel], float]] = {
+    "max_corner_gap": lambda seam: seam.max_corner_gap,
+    "max_seam_gap": lambda seam: seam.max_seam_gap,
+    "max_kink": lambda seam: seam.max_kink,
+}
+_OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
+    "max_deviation": lambda panel: panel.max_deviation,
+    "hausdorff": lambda panel: panel.hausdorff,
+    "max_corner_drift": lambda panel: panel.max_corner_drift,
+    "max_drift_along": lambda panel: panel.max_drift_along,
+    "max_free_edge_drift": lambda panel: panel.max_free_edge_drift,
+}
+
+
+def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
+    tolerance = report.settings.gap_tolerance
+    if tolerance is None:
+        return
+    widest = max(summary.max_corner_gap, summary.max_seam_gap)
+    if summary.tolerance_met and widest > tolerance:
+        yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
+
+
+def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
+    for key in ("solids", "skins", "valid", "face_kinds", "names_kept"):
+        was, now = getattr(stated, key), getattr(found, key)
+        if was != now:
+            yield f"The certificate in the report says {key} = {was}, the files show {now}."
+    if stated.failures:
+        yield f"The certificate in the report lists what does not hold: {stated.failures[0]}"
+    for key, limit in (("max_tangency_error", 1e-9), ("volume_error", 1e-9), ("max_seam_gap", SAME_LENGTH)):
+        was, now = getattr(stated, key), getattr(found, key)
+        if not abs(was - now) <= limit:
+            yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."

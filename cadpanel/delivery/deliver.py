@@ -1,0 +1,117 @@
+"""From a fit to a delivery folder: build, write, read back, and only then put the folder in its place."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from cadpanel.delivery.build import BuiltPanel, Progress, build_panels
+from cadpanel.delivery.files import PANELS, REPORT, SKINS, write_skins, write_solids
+from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.proof import prove
+from cadpanel.delivery.records import (
+    baselines_record,
+    panel_records,
+    reference_record,
+    seam_records,
+    settings_record,
+    solve_record,
+)
+from cadpanel.delivery.report import CertificateModel, ReportModel, TimingModel, write_report
+from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.delivery.summary import summary
+from cadpanel.errors import ProofError
+from cadpanel.fitting.result import FitResult
+
+
+def deliver(
+    result: FitResult,
+    out: Path,
+    sheet: SheetSettings | None = None,
+    *,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> ReportModel:
+    """Write a delivery folder whole or not at all: panels.step, skins.step and report.json.
+
+    Args:
+        result: the fitted panels.
+        out: the folder; an existing one is refused unless `overwrite` is set.
+        sheet: thickness, side and schema.
+        overwrite: replace an existing delivery.
+        progress: told of the steps "build", "write" and "verify".
+
+    Raises:
+        PanelError: a panel cannot be built.
+        DeliveryError: the folder is refused or cannot be written.
+        ProofError: what was written is not what was promised; nothing is left.
+    """
+    with delivery_folder(out, overwrite=overwrite) as folder:
+        return fill_delivery(result, folder, sheet or SheetSettings(), progress=progress)
+
+
+def fill_delivery(
+    result: FitResult,
+    folder: Path,
+    sheet: SheetSettings,
+    *,
+    seconds_to_read: float = 0.0,
+    progress: Progress | None = None,
+) -> ReportModel:
+    """Build, write and verify into a folder that is there; see `deliver`.
+
+    Args:
+        result: the fitted panels.
+        folder: as `delivery_folder` gives it.
+        sheet: thickness, side and schema.
+        seconds_to_read: how long reading the reference took, for the report.
+        progress: told of the steps.
+    """
+    tell = progress or _say_nothing
+    began = time.perf_counter()
+    built = build_panels(result.shapes, sheet, tell)
+    panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
+    built_at = time.perf_counter()
+    _write(folder, built, result.reference.source, sheet, tell)
+    written_at = time.perf_counter()
+    tell("verify", 0, 1)
+    certificate = prove(folder, panels, seams)
+    verified_at = time.perf_counter()
+    _demand(certificate)
+    report = ReportModel(
+        reference=reference_record(result.reference),
+        settings=settings_record(result.reference, result.settings, sheet),
+        solve=solve_record(result),
+        panels=panels,
+        seams=seams,
+        summary=summary(result.measures, result.local, result.settings),
+        baselines=baselines_record(result),
+        certificate=certificate,
+        timing=TimingModel(
+            read=seconds_to_read,
+            fit=result.seconds,
+            build=built_at - began,
+            write=written_at - built_at,
+            verify=verified_at - written_at,
+        ),
+    )
+    write_report(report, folder / REPORT)
+    tell("verify", 1, 1)
+    return report
+
+
+def _write(folder: Path, built: tuple[BuiltPanel, ...], source: str, sheet: SheetSettings, tell: Progress) -> None:
+    tell("write", 0, 2)
+    write_solids(folder / PANELS, built, source, sheet.schema)
+    tell("write", 1, 2)
+    write_skins(folder / SKINS, built, source, sheet.schema)
+    tell("write", 2, 2)
+
+
+def _demand(certificate: CertificateModel) -> None:
+    if certificate.failures:
+        raise ProofError(certificate.failures)
+
+
+def _say_nothing(_step: str, _done: int, _of: int) -> None:
+    pass

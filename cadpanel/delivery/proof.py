@@ -1,0 +1,51 @@
+"""The proof: both STEP files are read back and held against the records of the report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
+from cadpanel.delivery.files import PANELS, SKINS
+from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel
+
+
+def prove(folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel]) -> CertificateModel:
+    """What reading panels.step and skins.step in a folder back shows.
+
+    Raises:
+        DeliveryError: one of the files cannot be read at all.
+    """
+    moved = {panel.name: panel.moved for panel in panels}
+    expected = [
+        ExpectedPanel(
+            name=panel.name,
+            volume=panel.volume,
+            kinds=tuple(patch.kind for patch in panel.patches),
+            corners=np.array(panel.corners),
+        )
+        for panel in panels
+    ]
+    gaps = [
+        ExpectedSeam(panels=seam.panels, ends=seam.ends, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
+        for seam in seams
+    ]
+    return _record(certify(folder / PANELS, folder / SKINS, expected, gaps))
+
+
+def _record(certificate: Certificate) -> CertificateModel:
+    # A seam whose ends cannot be found has no gap to state; that it cannot be found is among the failures.
+    measured = [gap for gap in certificate.seam_gaps if np.isfinite(gap)]
+    return CertificateModel(
+        solids=certificate.solids,
+        skins=certificate.skins,
+        valid=certificate.valid,
+        face_kinds=certificate.face_kinds,
+        max_tangency_error=certificate.max_tangency_error,
+        volume_error=certificate.volume_error,
+        names_kept=certificate.names_kept,
+        max_seam_gap=max(measured, default=0.0),
+        failures=certificate.failures,
+    )

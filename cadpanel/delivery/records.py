@@ -1,0 +1,127 @@
+"""From a fit and its built panels to the report's records: millimetres stay, radians become degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib.metadata import version
+
+import numpy as np
+
+from cadpanel.delivery.build import BuiltPanel
+from cadpanel.delivery.patches import patch_models, vector
+from cadpanel.delivery.report import (
+    BaselinesModel,
+    End,
+    PanelModel,
+    ReferenceModel,
+    SeamModel,
+    SettingsModel,
+    SolveModel,
+    WeightsModel,
+)
+from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.delivery.summary import summary
+from cadpanel.fitting.measures import Measures
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.model import Reference, Seam
+
+
+def reference_record(reference: Reference) -> ReferenceModel:
+    """The file and what it holds."""
+    return ReferenceModel(file=reference.source, panels=len(reference.panels), seams=len(reference.seams))
+
+
+def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSettings) -> SettingsModel:
+    """Everything that is needed to run the fit again."""
+    weights = settings.weights
+    return SettingsModel(
+        cadpanel_version=version("cadpanel"),
+        feature=settings.feature,
+        tilt=settings.tilt,
+        method=settings.method,
+        gap_tolerance=settings.gap_tolerance if weights is None else None,
+        drift_along=settings.drift_along,
+        drift_across=settings.drift_across,
+        weights=None
+        if weights is None
+        else WeightsModel(gap=weights.gap, deviation=weights.deviation, drift=weights.drift),
+        restarts=settings.restarts,
+        seed=settings.seed,
+        seam_tolerance=reference.seam_tolerance,
+        thickness=sheet.thickness,
+        skin_side=sheet.skin_side,
+        step_schema=sheet.schema,
+    )
+
+
+def solve_record(result: FitResult) -> SolveModel:
+    """How the result was reached."""
+    return SolveModel(iterations=result.iterations, starts=result.starts, agreed=result.agreed)
+
+
+def baselines_record(result: FitResult) -> BaselinesModel:
+    """The methods that the result is held against, by the same measures and limits."""
+    return BaselinesModel(
+        local=summary(result.local, result.local, result.settings),
+        two_stage=summary(result.two_stage, result.local, result.settings),
+    )
+
+
+def panel_records(result: FitResult, built: Sequence[BuiltPanel]) -> tuple[PanelModel, ...]:
+    """Every panel as it was fitted and built."""
+    return tuple(_panel(result.measures, index, panel) for index, panel in enumerate(built))
+
+
+def _panel(measures: Measures, index: int, built: BuiltPanel) -> PanelModel:
+    low, high = (tuple(vector(corner) for corner in end) for end in built.shape.corners())
+    return PanelModel(
+        name=built.shape.name,
+        feature=built.shape.feature,
+        rms_deviation=float(measures.rms_deviation[index]),
+        max_deviation=float(measures.max_deviation[index]),
+        hausdorff=float(measures.hausdorff[index]),
+        max_corner_drift=float(measures.drift[index].max()),
+        max_drift_along=float(measures.drift_along[index].max()),
+        max_free_edge_drift=float(measures.drift_across[index].max()),
+        area=built.area,
+        volume=built.volume,
+        corners=(low, high),
+        patches=patch_models(built.shape),
+        moved=built.moved,
+        notes=built.notes,
+    )
+
+
+def seam_records(reference: Reference, measures: Measures) -> tuple[SeamModel, ...]:
+    """Every seam; the panel that comes first in the file is named first, as its walk orders the corners."""
+    return tuple(_seam(reference, seam, measures, index) for index, seam in enumerate(reference.seams))
+
+
+def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
+    """The two panels of every seam, the one that comes first in the file first."""
+    return tuple(_names(reference, seam) for seam in reference.seams)
+
+
+def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
+    first, second = sorted(seam.panels)
+    return reference.panels[first].name, reference.panels[second].name
+
+
+def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> SeamModel:
+    order = np.argsort(seam.panels, kind="stable")
+    first, second = (_end(seam.ends[i]) for i in order)
+    gaps = measures.corner_gaps[index]
+    return SeamModel(
+        panels=_names(reference, seam),
+        ends=(first, second),
+        reversed=seam.reversed,
+        corner_gaps=tuple(gaps.tolist()),
+        max_corner_gap=float(gaps.max()),
+        max_seam_gap=float(measures.seam_gap[index]),
+        max_kink=float(np.degrees(measures.kink[index])),
+    )
+
+
+def _end(end: int) -> End:
+    return 1 if end else 0

@@ -1,0 +1,43 @@
+"""What the sheets are made of and how they are written: the settings of a delivery, checked when they are made."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from cadpanel.errors import SettingsError
+from cadpanel.geometry.buildable import SkinSide
+
+Schema = Literal["AP242", "AP214"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SheetSettings:
+    """How panels are built and written.
+
+    Attributes:
+        thickness: of the sheet, mm.
+        skin_side: "outer": the skin is the outer face and the sheet lies inside; "inner": the other way round.
+        schema: of the STEP files, "AP242" or "AP214".
+    """
+
+    thickness: float = 3.0
+    skin_side: SkinSide = "outer"
+    schema: Schema = "AP242"
+
+    def __post_init__(self) -> None:
+        """Check every setting.
+
+        Raises:
+            SettingsError: a setting is out of range; the message says which and what it may be.
+        """
+        if not (math.isfinite(self.thickness) and self.thickness > 0.0):
+            raise SettingsError(f"the sheet thickness must be above 0 mm, not {self.thickness:g} mm")
+        _require_one_of("skin side", self.skin_side, get_args(SkinSide))
+        _require_one_of("STEP schema", self.schema, get_args(Schema))
+
+
+def _require_one_of(what: str, value: str, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise SettingsError(f"the {what} must be {' or '.join(choices)}, not '{value}'")

@@ -95,11 +95,11 @@ def measure(problem: Problem, reference: Reference, unknowns: Array) -> Measures
     )
 
 
-def largest_seam_gap(problem: Problem, state: State) -> float:
-    """The largest seam gap of the panels in a state, 0 without seams, mm."""
+def seam_gaps(problem: Problem, state: State) -> Array:
+    """(seams,) the seam gaps of the panels in a state, mm."""
     if not len(problem.seams.panels):
-        return 0.0
-    return float(seam_gap(*_seam_ends(problem, state))[0].max())
+        return np.zeros(0)
+    return seam_gap(*_seam_ends(problem, state))[0]
 
 
 def _seam_ends(problem: Problem, state: State) -> tuple[EndCurves, EndCurves]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import PanelError
-from cadpanel.fitting.measures import largest_seam_gap
+from cadpanel.fitting.measures import seam_gaps
 from cadpanel.fitting.problem import Objective, Problem, Subset
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.reference.model import Reference
@@ -28,8 +28,8 @@ _MARGIN = 1e-3
 # A local fit further off than this share of the panel's length is no fit, and normals further off are no skin.
 _HOPELESS_DEVIATION = 0.05
 _HOPELESS_TILT = np.radians(35.0)
-# How often the arcs are tightened, and up to which excess that is worth trying.
-_TIGHTENINGS = 5
+# How often seams are tightened, and up to which excess that is worth trying.
+_TIGHTENINGS = 8
 _NEARLY = 2.0
 _WHOLE = Schedule()
 _FINISH = Schedule(balance=10)
@@ -118,12 +118,14 @@ def _concurrent(problem: Problem, start: Array, settings: FitSettings, progress:
     model = Objective(problem, [problem.deviation, *held], coupled=True)
     found = _balance(problem, model, held, start, lambda unknowns: unknowns, progress)
     iterations = found.iterations
-    # Between the points that hold the arcs the curves may still part a little further: measure, tighten, go on.
+    # Between the points that are held the curves may still part a little further: measure, tighten there, go on.
     for _ in range(_TIGHTENINGS):
-        open_by = largest_seam_gap(problem, problem.state(found.unknowns)) / settings.gap_tolerance
-        if not 1.0 < open_by < _NEARLY:
+        excess = seam_gaps(problem, problem.state(found.unknowns)) / settings.gap_tolerance
+        if not 1.0 < excess.max(initial=0.0) < _NEARLY:
             break
-        arcs.hold.tighten((1.0 - _MARGIN) / open_by)
+        share = np.where(excess > 1.0, (1.0 - _MARGIN) / excess, 1.0)
+        for gap in (corners, arcs):
+            gap.hold.tighten(share)
         found = _balance(problem, model, held, found.unknowns, lambda unknowns: unknowns, progress, _FINISH)
         iterations += found.iterations
     return Fitted(found.unknowns, iterations)

@@ -70,9 +70,9 @@ class Hold:
         factor = np.clip(ratio**self._pace, 1.0 if only_grow else 1.0 / _LEAP, _LEAP)
         self.weight = np.clip(self.weight * factor, self._least, MOST_WEIGHT)
 
-    def tighten(self, share: float) -> None:
-        """Shrink all distances to a share of themselves; the weights stay as a start."""
-        self.radius = share * self.radius
+    def tighten(self, share: Array) -> None:
+        """Shrink the distances of every group to a share (groups,) of themselves; the weights stay as a start."""
+        self.radius = self.radius * share[:, None]
 
     def _ratio(self, vectors: Array) -> Array:
         ratio: Array = np.linalg.norm(vectors, axis=-1) / self.radius

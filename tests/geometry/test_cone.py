@@ -47,7 +47,7 @@ def surface(p, t, n, radius, half_angle, angle, along):
 
 def place(seed, radius, half_angle, count=6):
     """Feet on the part of the cone that has not passed its apex, their normals, and the cone's arguments."""
-    p, b, t, n = ruling(seed, count)
+    p, _, t, n = ruling(seed, count)
     random = np.random.default_rng(seed + 1)
     reach = abs(radius / math.tan(half_angle)) if abs(half_angle) > 1e-3 else 2.0
     along = random.uniform(-0.6, 0.6, count) * min(reach, 2.0)
@@ -122,7 +122,7 @@ def moved_by(twist, p, *vectors):
     omega = np.broadcast_to(twist[:3], p.shape)
     angle = np.linalg.norm(omega, axis=-1)
     axis = omega / np.maximum(angle, 1e-300)[:, None]
-    return point, *(rotate_about(axis, angle, v) for v in vectors)
+    return [point, *(rotate_about(axis, angle, v) for v in vectors)]
 
 
 @given(seeds, radii, half_angles)
@@ -135,7 +135,8 @@ def test_derivatives_by_the_twist_agree_with_finite_differences(seed, radius, ha
     for j in range(6):
         step = STEP * np.eye(6)[j]
         ahead, behind = moved_by(step, p, t, n), moved_by(-step, p, t, n)
-        change = (cone_distance(x, *ahead, r, g) - cone_distance(x, *behind, r, g)) / (2.0 * STEP)
+        apart = [cone_distance(x, p_, t_, n_, r, g) for p_, t_, n_ in (ahead, behind)]
+        change = (apart[0] - apart[1]) / (2.0 * STEP)
         assert inner[..., j] == pytest.approx(change, abs=allowed)
         change = (plane_distance(x, ahead[0], ahead[2]) - plane_distance(x, behind[0], behind[2])) / (2.0 * STEP)
         assert flat[..., j] == pytest.approx(change, abs=allowed)
@@ -177,7 +178,7 @@ def test_any_generatrix_describes_the_same_cone(seed, radius, half_angle, angle)
 
 @given(seeds, half_angles)
 def test_a_very_large_radius_is_nearly_the_plane(seed, half_angle):
-    p, b, t, n = ruling(seed, 5)
+    p, _, t, n = ruling(seed, 5)
     random = np.random.default_rng(seed + 1)
     x = columns(p + 0.1 * random.normal(size=(5, 3)))
     flat = plane_distance(x, p, n)

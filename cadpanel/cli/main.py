@@ -10,14 +10,19 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from cadpanel.errors import CadpanelError
+from cadpanel.cli.compare import compare
+from cadpanel.cli.fit import fit
+from cadpanel.cli.verify import verify
+from cadpanel.errors import CadpanelError, ProofError
 
+EXIT_NOT_HELD = 1
+"""The command ran, but a tolerance or a proof does not hold."""
 EXIT_REFUSED = 2
 """The input, a setting or the output folder was refused."""
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
-COMMANDS: tuple[Callable[..., None], ...] = ()
+COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, verify)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
 app = typer.Typer(name="cadpanel", add_completion=False, pretty_exceptions_enable=False)
@@ -57,6 +62,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)
     except typer.TyperException as error:
         return _refuse(f"{error.format_message().rstrip('.')} (see 'cadpanel --help').")
+    except ProofError as error:
+        sys.stderr.write("\n".join(("The proof does not hold, and nothing was written:", *error.failures, "")))
+        return EXIT_NOT_HELD
     except CadpanelError as error:
         return _refuse(str(error))
     except KeyboardInterrupt:

@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from cadpanel.delivery.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel, write_comparison
-from cadpanel.delivery.files import COMPARISON
 from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.names import COMPARISON
 from cadpanel.delivery.records import reference_record, seam_names, settings_record
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.delivery.summary import summary

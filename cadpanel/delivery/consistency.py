@@ -60,8 +60,8 @@ def _distance(patch: PatchModel, points: Array) -> Array:
     beyond = np.maximum(np.maximum(patch.radius_min - radius, radius - patch.radius_max), 0.0)
     if isinstance(patch, ConePatchModel):
         angle = np.radians(patch.half_angle)
-        return np.maximum(np.abs(radius * np.cos(angle) - height * np.sin(angle)), beyond)
-    return np.maximum(np.abs(radius - patch.radius_max), beyond)
+        return np.asarray(np.maximum(np.abs(radius * np.cos(angle) - height * np.sin(angle)), beyond))
+    return np.asarray(np.maximum(np.abs(radius - patch.radius_max), beyond))
 
 
 def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str]:

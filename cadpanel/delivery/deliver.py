@@ -6,8 +6,9 @@ import time
 from pathlib import Path
 
 from cadpanel.delivery.build import BuiltPanel, Progress, build_panels
-from cadpanel.delivery.files import PANELS, REPORT, SKINS, write_skins, write_solids
+from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.names import PANELS, REPORT, SKINS
 from cadpanel.delivery.proof import prove
 from cadpanel.delivery.records import (
     baselines_record,

@@ -9,11 +9,6 @@ from cadpanel.brep.step import Color, write_step
 from cadpanel.delivery.build import BuiltPanel
 from cadpanel.delivery.sheet import Schema
 
-PANELS = "panels.step"
-SKINS = "skins.step"
-REPORT = "report.json"
-COMPARISON = "compare.json"
-
 PALETTE: tuple[Color, ...] = (
     (0.62, 0.68, 0.73),
     (0.76, 0.72, 0.65),

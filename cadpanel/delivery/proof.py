@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
-from cadpanel.delivery.files import PANELS, SKINS
+from cadpanel.delivery.names import PANELS, SKINS
 from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel
 
 

@@ -1,0 +1,63 @@
+"""The command `cadpanel compare`."""
+
+from __future__ import annotations
+
+from cadpanel.cli import options
+from cadpanel.cli.steps import Steps, steps
+from cadpanel.delivery.comparison import ComparisonModel, write_comparison
+from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.names import COMPARISON
+from cadpanel.fitting.settings import FitSettings
+
+
+def compare(
+    reference: options.ReferenceFile,
+    out: options.Out,
+    tilt: options.TiltOption = "free",
+    gap_tolerance: options.GapTolerance = None,
+    weights: options.WeightsOption = None,
+    drift_along: options.DriftAlong = 5.0,
+    drift_across: options.DriftAcross = 2.0,
+    restarts: options.Restarts = 0,
+    seed: options.Seed = 0,
+    seam_tolerance: options.SeamTolerance = 1.0,
+    overwrite: options.Overwrite = False,
+    quiet: options.Quiet = False,
+) -> None:
+    """Fit a reference four ways, two-stage and all at once, with cylinders and with cones: one row a seam.
+
+    Nothing is built; compare.json holds the numbers. Exit codes: 0 the comparison is written; 2 refused.
+    """
+    settings = options.fit_settings(
+        tilt=tilt,
+        gap_tolerance=gap_tolerance,
+        weights=weights,
+        drift_along=drift_along,
+        drift_across=drift_across,
+        restarts=restarts,
+        seed=seed,
+    )
+    with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
+        comparison = _run(reference, seam_tolerance, settings, shown)
+        write_comparison(comparison, folder / COMPARISON)
+    if not quiet:
+        from cadpanel.cli.tables import console, print_comparison
+
+        print_comparison(comparison)
+        console().print(f"Written: {out}", soft_wrap=True)
+
+
+def _run(file: options.ReferenceFile, seam_tolerance: float, settings: FitSettings, shown: Steps) -> ComparisonModel:
+    shown.begin("Read reference", file.name)
+    # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
+    from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.compare import compare as compare_reference
+
+    def tell(feature: str, method: str, round_: int, excess: float) -> None:
+        step = f"{method.replace('_', '-')}, {feature}"
+        if round_ == 0:
+            shown.begin(step)
+        else:
+            shown.round(step, round_, excess)
+
+    return compare_reference(read_reference(file, seam_tolerance), settings, progress=tell)

@@ -1,0 +1,73 @@
+"""Progress of long steps: bars on a terminal, nothing where the output goes to a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+
+_BUILDING = {"build": "Build solids", "write": "Write STEP", "verify": "Read back and verify"}
+
+
+class Steps:
+    """One line a step: what it is, a bar, how far it is, and its time."""
+
+    def __init__(self, progress: Progress) -> None:
+        """Write to `progress`."""
+        self._progress = progress
+        self._tasks: dict[str, TaskID] = {}
+
+    def begin(self, step: str, detail: str = "") -> None:
+        """Start a step of unknown length; those before it are done."""
+        for task in self._tasks.values():
+            self._finish(task)
+        self._tasks[step] = self._progress.add_task(step, total=None, detail=detail)
+
+    def detail(self, step: str, detail: str) -> None:
+        """Say how far a step is."""
+        self._progress.update(self._tasks[step], detail=detail)
+
+    def count(self, step: str, done: int, of: int) -> None:
+        """Say how much of a step is done; begins it where it has not begun."""
+        name = _BUILDING.get(step, step)
+        if name not in self._tasks:
+            self.begin(name)
+        self._progress.update(self._tasks[name], completed=done, total=of, detail=f"{done} of {of}" if of > 1 else "")
+
+    def round(self, step: str, round_: int, excess: float) -> None:
+        """Say how far the concurrent fit is from its tolerances; begins the step where it has not begun."""
+        if step not in self._tasks:
+            self.begin(step)
+        self._progress.update(
+            self._tasks[step], detail=f"round {round_}: worst gap or drift at {excess:.2f} x its limit"
+        )
+
+    def end(self) -> None:
+        """All steps are done."""
+        for task in self._tasks.values():
+            self._finish(task)
+
+    def _finish(self, task: TaskID) -> None:
+        self._progress.update(task, total=1, completed=1)
+        self._progress.stop_task(task)
+
+
+@contextmanager
+def steps(*, quiet: bool) -> Iterator[Steps]:
+    """Show steps on the terminal's error stream while the block runs."""
+    console = Console(stderr=True)
+    progress = Progress(
+        SpinnerColumn(finished_text="[green]ok"),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TimeElapsedColumn(),
+        TextColumn("[dim]{task.fields[detail]}"),
+        console=console,
+        disable=quiet or not console.is_terminal,
+    )
+    with progress:
+        shown = Steps(progress)
+        yield shown
+        shown.end()

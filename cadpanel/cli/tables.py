@@ -1,0 +1,134 @@
+"""Results as a shop reads them: millimetres, degrees, percent."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from cadpanel.delivery.comparison import ComparisonModel
+from cadpanel.delivery.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+
+_METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
+
+_MEASURES: dict[str, Callable[[SummaryModel], str]] = {
+    "Largest corner gap, mm": lambda s: length(s.max_corner_gap),
+    "Largest gap along a whole seam, mm": lambda s: length(s.max_seam_gap),
+    "Largest kink across a seam, degrees": lambda s: f"{s.max_kink:.2f}",
+    "RMS deviation, mm": lambda s: length(s.rms_deviation),
+    "  as a multiple of each panel alone": lambda s: multiple(s.local_rms_multiple),
+    "Largest deviation, mm": lambda s: length(s.max_deviation),
+    "Hausdorff distance, mm": lambda s: length(s.hausdorff),
+    "Largest drift along the strip, mm": lambda s: f"{s.max_drift_along:.1f}",
+    "  of the panel's length": lambda s: f"{s.drift_along_percent:.2f} %",
+    "Largest drift across it, mm": lambda s: f"{s.max_free_edge_drift:.1f}",
+    "  of the panel's length ": lambda s: f"{s.drift_across_percent:.2f} %",
+    "Gap tolerance and drift limits": lambda s: "met" if s.tolerance_met else "not met",
+}
+
+
+def length(value: float) -> str:
+    """Millimetres, with the digits that matter."""
+    return f"{value:.3f}" if value < 10.0 else f"{value:.2f}"
+
+
+def multiple(value: float | None) -> str:
+    """A ratio, or a dash where there is nothing to divide by."""
+    return "-" if value is None else f"{value:.2f} x"
+
+
+def console() -> Console:
+    """Standard output; a file or a pipe gets lines wide enough for the tables."""
+    own_width = sys.stdout.isatty() or "COLUMNS" in os.environ
+    return Console(highlight=False, width=None if own_width else 120)
+
+
+def print_report(report: ReportModel, folder: Path, took: float) -> None:
+    """The table at the end of a fit, the certificate, where it all is and how many seconds it took."""
+    settings = report.settings
+    table = Table(title=title(report), title_justify="left", title_style="bold")
+    table.add_column("")
+    for heading in ("each alone", "two-stage"):
+        table.add_column(heading, justify="right", style="dim")
+    table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
+    columns = (report.baselines.local, report.baselines.two_stage, report.summary)
+    for name, show in _MEASURES.items():
+        if settings.gap_tolerance is None and name.startswith("Gap tolerance"):
+            continue
+        table.add_row(name.rstrip(), *(_marked(show(column)) for column in columns))
+    out = console()
+    out.print()
+    out.print(table)
+    print_certificate(report.certificate, "Certificate")
+    for panel in report.panels:
+        for note in panel.notes:
+            out.print(Text(f"Note on panel '{panel.name}': {note}"))
+    out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def title(report: ReportModel) -> str:
+    """What was fitted, and how."""
+    reference, settings = report.reference, report.settings
+    asked = "weights" if settings.gap_tolerance is None else f"gap tolerance {settings.gap_tolerance:g} mm"
+    return (
+        f"{reference.file}: {counted(reference.panels, 'panel')}, {counted(reference.seams, 'seam')}, "
+        f"{settings.feature}, {asked}"
+    )
+
+
+def print_certificate(certificate: CertificateModel, heading: str) -> None:
+    """What the files showed when they were read back."""
+    faces = certificate.face_kinds.items()
+    kinds = ", ".join(counted(count, f"{kind} face") for kind, count in faces if count) or "no faces"
+    said = (
+        f"{counted(certificate.solids, 'solid')} {'valid' if certificate.valid else 'NOT valid'} ({kinds}), "
+        f"names {'kept' if certificate.names_kept else 'NOT kept'}, "
+        f"tangent to {certificate.max_tangency_error:.1g} rad, volumes to {certificate.volume_error:.1g}, "
+        f"seams open by at most {length(certificate.max_seam_gap)} mm in the files."
+    )
+    console().print(Text(f"{heading}: {said}"))
+
+
+def counted(count: int, thing: str) -> str:
+    """One thing, several things."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def seconds(timing: TimingModel) -> str:
+    """What each step took; the rest of the time goes into starting the CAD kernel."""
+    steps = ("read", "fit", "build", "write", "verify")
+    return ", ".join(f"{step} {getattr(timing, step):.1f}" for step in steps)
+
+
+def print_comparison(comparison: ComparisonModel) -> None:
+    """The paper's Table 1: one row a seam, then what the gaps cost."""
+    settings = comparison.settings
+    asked = "weights" if settings.gap_tolerance is None else f"gap tolerance {settings.gap_tolerance:g} mm"
+    table = Table(
+        title=f"{comparison.reference.file}: largest corner gap of each seam, mm ({asked})",
+        title_justify="left",
+        title_style="bold",
+    )
+    table.add_column("Seam", overflow="fold")
+    for column in comparison.columns:
+        table.add_column(f"{_METHODS[column.method]}\n{column.feature}", justify="right", overflow="fold")
+    for index, (first, second) in enumerate(comparison.seams):
+        table.add_row(Text(f"{first} - {second}"), *(length(c.max_corner_gap[index]) for c in comparison.columns))
+    table.add_section()
+    for name, show in _MEASURES.items():
+        table.add_row(name.rstrip(), *(_marked(show(column.summary)) for column in comparison.columns))
+    table.add_section()
+    table.add_row("RMS deviation of each panel alone, mm", *(length(c.local_rms_deviation) for c in comparison.columns))
+    table.add_row("Time of the fit, s", *(f"{column.seconds:.1f}" for column in comparison.columns))
+    out = console()
+    out.print()
+    out.print(table)
+
+
+def _marked(value: str) -> Text:
+    return Text(value, style="bold red" if value == "not met" else "")

@@ -1,0 +1,39 @@
+"""The command `cadpanel verify`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cadpanel.cli import options
+from cadpanel.cli.steps import steps
+
+
+def verify(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that 'cadpanel fit' wrote.")],
+    quiet: options.Quiet = False,
+) -> None:
+    """Read a delivery's files again and hold them against its report: solids, faces, tangency, volumes, names, gaps.
+
+    What needs the reference, deviation and drift, cannot be proved from a delivery alone. Exit codes: 0 all holds;
+    1 something does not, and it says what; 2 the folder or a file is missing or cannot be read.
+    """
+    with steps(quiet=quiet) as shown:
+        shown.begin("Read back and verify", folder.name)
+        # Here, not above: neither help nor a refusal should wait for the CAD kernel.
+        from cadpanel.cli.tables import console, print_certificate
+        from cadpanel.delivery.verify import verify as verify_delivery
+
+        found = verify_delivery(folder)
+    if not quiet:
+        print_certificate(found.certificate, str(folder))
+        if not found.report.summary.tolerance_met:
+            console().print("Note: the report says that its tolerance is not met.")
+    if not found.holds:
+        sys.stderr.write("\n".join(("The proof does not hold:", *found.failures, "")))
+        raise typer.Exit(1)
+    if not quiet:
+        console().print("Everything holds.")

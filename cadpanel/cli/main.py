@@ -61,7 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)
     except typer.TyperException as error:
-        return _refuse(f"{error.format_message().rstrip('.')} (see 'cadpanel --help').")
+        message = error.format_message().replace("Value error, ", "").rstrip(".")
+        return _refuse(f"{message} (see 'cadpanel --help').")
     except ProofError as error:
         sys.stderr.write("\n".join(("The proof does not hold, and nothing was written:", *error.failures, "")))
         return EXIT_NOT_HELD
@@ -75,8 +76,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _refuse(sentence: str) -> int:
-    """Say it on one line, however it was wrapped."""
-    sys.stderr.write(" ".join(sentence.split()) + "\n")
+    """Say it as one sentence on one line, however it was wrapped."""
+    words = " ".join(sentence.split()).rstrip(".")
+    sys.stderr.write(f"{words[:1].upper()}{words[1:]}.\n")
     return EXIT_REFUSED
 
 

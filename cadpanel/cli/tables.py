@@ -18,17 +18,17 @@ _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "conc
 
 _MEASURES: dict[str, Callable[[SummaryModel], str]] = {
     "Largest corner gap, mm": lambda s: length(s.max_corner_gap),
-    "Largest gap along a whole seam, mm": lambda s: length(s.max_seam_gap),
-    "Largest kink across a seam, degrees": lambda s: f"{s.max_kink:.2f}",
+    "Largest seam gap, mm": lambda s: length(s.max_seam_gap),
+    "Largest kink, degrees": lambda s: f"{s.max_kink:.2f}",
     "RMS deviation, mm": lambda s: length(s.rms_deviation),
-    "  as a multiple of each panel alone": lambda s: multiple(s.local_rms_multiple),
+    "  of each panel alone": lambda s: multiple(s.local_rms_multiple),
     "Largest deviation, mm": lambda s: length(s.max_deviation),
     "Hausdorff distance, mm": lambda s: length(s.hausdorff),
-    "Largest drift along the strip, mm": lambda s: f"{s.max_drift_along:.1f}",
+    "Largest drift along, mm": lambda s: f"{s.max_drift_along:.1f}",
     "  of the panel's length": lambda s: f"{s.drift_along_percent:.2f} %",
-    "Largest drift across it, mm": lambda s: f"{s.max_free_edge_drift:.1f}",
+    "Largest drift across, mm": lambda s: f"{s.max_free_edge_drift:.1f}",
     "  of the panel's length ": lambda s: f"{s.drift_across_percent:.2f} %",
-    "Gap tolerance and drift limits": lambda s: "met" if s.tolerance_met else "not met",
+    "Gap and drift limits": lambda s: "met" if s.tolerance_met else "not met",
 }
 
 
@@ -58,7 +58,7 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
     columns = (report.baselines.local, report.baselines.two_stage, report.summary)
     for name, show in _MEASURES.items():
-        if settings.gap_tolerance is None and name.startswith("Gap tolerance"):
+        if settings.gap_tolerance is None and name.startswith("Gap and"):
             continue
         table.add_row(name.rstrip(), *(_marked(show(column)) for column in columns))
     out = console()
@@ -116,18 +116,24 @@ def print_comparison(comparison: ComparisonModel) -> None:
     )
     table.add_column("Seam", overflow="fold")
     for column in comparison.columns:
-        table.add_column(f"{_METHODS[column.method]}\n{column.feature}", justify="right", overflow="fold")
+        table.add_column(f"{_METHODS[column.method]}\n{_in_two_lines(column.feature)}", justify="right")
     for index, (first, second) in enumerate(comparison.seams):
         table.add_row(Text(f"{first} - {second}"), *(length(c.max_corner_gap[index]) for c in comparison.columns))
     table.add_section()
     for name, show in _MEASURES.items():
         table.add_row(name.rstrip(), *(_marked(show(column.summary)) for column in comparison.columns))
     table.add_section()
-    table.add_row("RMS deviation of each panel alone, mm", *(length(c.local_rms_deviation) for c in comparison.columns))
+    table.add_row("RMS of each panel alone, mm", *(length(c.local_rms_deviation) for c in comparison.columns))
     table.add_row("Time of the fit, s", *(f"{column.seconds:.1f}" for column in comparison.columns))
     out = console()
     out.print()
     out.print(table)
+
+
+def _in_two_lines(feature: str) -> str:
+    """Four columns of whole feature names would not fit on a screen."""
+    head, dash, tail = feature.rpartition("-")
+    return f"{head}{dash}\n{tail}"
 
 
 def _marked(value: str) -> Text:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from cadpanel.brep.occt import Shell, Solid
 from cadpanel.brep.skin import build_skin
 from cadpanel.brep.solid import build_solid
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.straighten import straighten
 from cadpanel.geometry.volume import sheet_volume, skin_area
-
-if TYPE_CHECKING:
-    from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
 # What is going on, how much of it is done, and of how much.
 Progress = Callable[[str, int, int], None]
@@ -35,8 +32,8 @@ class BuiltPanel:
     """
 
     shape: PanelShape
-    solid: TopoDS_Solid
-    skin: TopoDS_Shell
+    solid: Solid
+    skin: Shell
     area: float
     volume: float
     moved: float

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 # Where along the sweep of every curved patch the end curve is held to its neighbour's, besides the corners: a conic
 # with given ends and end tangents has one number left, so a few points pin it.
-ARC_SHARES = (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6)
+ARC_SHARES = (1 / 4, 1 / 2, 3 / 4)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,92 @@
-"""cadpanel turns a free-form building skin into panels that a shop can make from flat sheet."""
+"""cadpanel turns a free-form building skin into panels that a shop can make from flat sheet.
+
+    import cadpanel as cp
+
+    reference = cp.read("fixtures/kai_tak_nw.step")
+    result = cp.fit(reference, gap_tolerance=1.0)
+    report = cp.deliver(result, "build/kai_tak_nw", thickness=3.0)
+
+Lengths are millimetres and angles radians, but for report.json and the command line, which speak degrees. The names
+below are loaded when they are first used: importing cadpanel loads neither the CAD kernel nor NumPy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from cadpanel.errors import (
+    CadpanelError,
+    DeliveryError,
+    PanelError,
+    ProofError,
+    ReferenceFileError,
+    SettingsError,
+)
+
+if TYPE_CHECKING:
+    from cadpanel.api import compare, deliver, fit, read, to_build123d, to_cadquery, write_step
+    from cadpanel.brep.skin import build_skin
+    from cadpanel.brep.solid import build_solid
+    from cadpanel.delivery.verify import Verification, verify
+    from cadpanel.fitting.measures import Measures
+    from cadpanel.fitting.result import FitResult
+    from cadpanel.fitting.settings import FitSettings, Weights
+    from cadpanel.geometry.shape import ConePatch, PanelShape, PlanePatch
+    from cadpanel.reference.model import PanelReference, Reference, Seam
+
+__all__ = [
+    "CadpanelError",
+    "ConePatch",
+    "DeliveryError",
+    "FitResult",
+    "FitSettings",
+    "Measures",
+    "PanelError",
+    "PanelReference",
+    "PanelShape",
+    "PlanePatch",
+    "ProofError",
+    "Reference",
+    "ReferenceFileError",
+    "Seam",
+    "SettingsError",
+    "Verification",
+    "Weights",
+    "build_skin",
+    "build_solid",
+    "compare",
+    "deliver",
+    "fit",
+    "read",
+    "to_build123d",
+    "to_cadquery",
+    "verify",
+    "write_step",
+]
+
+if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
+    _HOMES = {
+        "api": ("compare", "deliver", "fit", "read", "to_build123d", "to_cadquery", "write_step"),
+        "brep.skin": ("build_skin",),
+        "brep.solid": ("build_solid",),
+        "delivery.verify": ("Verification", "verify"),
+        "fitting.measures": ("Measures",),
+        "fitting.result": ("FitResult",),
+        "fitting.settings": ("FitSettings", "Weights"),
+        "geometry.shape": ("ConePatch", "PanelShape", "PlanePatch"),
+        "reference.model": ("PanelReference", "Reference", "Seam"),
+    }
+    _HOME_OF = {name: f"cadpanel.{home}" for home, names in _HOMES.items() for name in names}
+
+    def __getattr__(name: str) -> object:
+        """Load a public name from where it is made."""
+        if name not in _HOME_OF:
+            raise AttributeError(f"module 'cadpanel' has no attribute '{name}'")
+        thing = getattr(import_module(_HOME_OF[name]), name)
+        globals()[name] = thing
+        return thing
+
+    def __dir__() -> list[str]:
+        """The public names are there before they are loaded."""
+        return sorted({*globals(), *__all__})

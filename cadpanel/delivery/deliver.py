@@ -73,7 +73,7 @@ def fill_delivery(
     built = build_panels(result.shapes, sheet, tell)
     panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
     built_at = time.perf_counter()
-    _write(folder, built, result.reference.source, sheet, tell)
+    _write(folder, built, Path(result.reference.source).stem, sheet, tell)
     written_at = time.perf_counter()
     tell("verify", 0, 1)
     certificate = prove(folder, panels, seams)
@@ -101,11 +101,11 @@ def fill_delivery(
     return report
 
 
-def _write(folder: Path, built: tuple[BuiltPanel, ...], source: str, sheet: SheetSettings, tell: Progress) -> None:
+def _write(folder: Path, built: tuple[BuiltPanel, ...], title: str, sheet: SheetSettings, tell: Progress) -> None:
     tell("write", 0, 2)
-    write_solids(folder / PANELS, built, source, sheet.schema)
+    write_solids(folder / PANELS, built, title, sheet.schema)
     tell("write", 1, 2)
-    write_skins(folder / SKINS, built, source, sheet.schema)
+    write_skins(folder / SKINS, built, title, sheet.schema)
     tell("write", 2, 2)
 
 

@@ -18,24 +18,24 @@ PALETTE: tuple[Color, ...] = (
 """Quiet colours that tell neighbours apart, sRGB."""
 
 
-def write_solids(path: Path, panels: Sequence[BuiltPanel], source: str, schema: Schema = "AP242") -> None:
+def write_solids(path: Path, panels: Sequence[BuiltPanel], title: str, schema: Schema = "AP242") -> None:
     """Write one solid a panel.
 
     Raises:
         DeliveryError: the file cannot be written.
     """
     shapes = [(panel.shape.name, panel.solid, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{Path(source).stem} panels", schema=schema)
+    write_step(path, shapes, title=f"{title} panels", schema=schema)
 
 
-def write_skins(path: Path, panels: Sequence[BuiltPanel], source: str, schema: Schema = "AP242") -> None:
+def write_skins(path: Path, panels: Sequence[BuiltPanel], title: str, schema: Schema = "AP242") -> None:
     """Write one open shell a panel, under the same names and in the same colours.
 
     Raises:
         DeliveryError: the file cannot be written.
     """
     shapes = [(panel.shape.name, panel.skin, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{Path(source).stem} skins", schema=schema)
+    write_step(path, shapes, title=f"{title} skins", schema=schema)
 
 
 def colour(place: int) -> Color:

@@ -1,0 +1,243 @@
+"""What a Python program calls: read, fit, take the solids, deliver. Millimetres throughout.
+
+Everything that needs the CAD kernel is imported when it is called, so that a program which only looks at results, or
+asks for help, does not wait for it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, TypedDict, Unpack, overload
+
+from cadpanel.features.feature import Tilt
+from cadpanel.fitting.result import FitResult, Progress
+from cadpanel.fitting.result import fit as fit_reference
+from cadpanel.fitting.settings import FitSettings, Method, Weights
+from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.shape import PanelShape
+from cadpanel.reference.model import Reference
+
+if TYPE_CHECKING:
+    import build123d
+    import cadquery
+
+    from cadpanel.delivery.build import BuiltPanel
+    from cadpanel.delivery.build import Progress as DeliveryProgress
+    from cadpanel.delivery.compare import Progress as CompareProgress
+    from cadpanel.delivery.comparison import ComparisonModel
+    from cadpanel.delivery.report import ReportModel
+    from cadpanel.delivery.sheet import Schema
+
+
+class FitKeywords(TypedDict, total=False):
+    """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
+
+    feature: str
+    tilt: Tilt
+    method: Method
+    gap_tolerance: float
+    drift_along: float
+    drift_across: float
+    weights: Weights | None
+    restarts: int
+    seed: int
+
+
+def read(path: str | Path, *, seam_tolerance: float = 1.0) -> Reference:
+    """Read a STEP file in which each product is one panel's faces, and find out which panels meet.
+
+    Args:
+        path: the file.
+        seam_tolerance: how far the ends of two panels that meet may lie apart, mm.
+
+    Raises:
+        ReferenceFileError: the file cannot be read, or does not hold panels.
+        PanelError: one of the panels is none.
+        SettingsError: the tolerance is no positive length.
+    """
+    from cadpanel.brep.read import read_reference
+
+    return read_reference(path, seam_tolerance)
+
+
+def fit(
+    reference: Reference,
+    settings: FitSettings | None = None,
+    *,
+    progress: Progress | None = None,
+    **changes: Unpack[FitKeywords],
+) -> FitResult:
+    """Fit all panels of a reference.
+
+    Args:
+        reference: what is to be approximated.
+        settings: how; by default concurrent plane-cone-plane with gaps of at most 1 mm.
+        progress: told the method, the round and the largest excess over a tolerance (1 where it holds).
+        changes: settings to change, for example gap_tolerance=5.0.
+
+    Raises:
+        PanelError: a panel's faces are nothing that the feature could approximate.
+        SettingsError: a setting is out of its range.
+    """
+    return fit_reference(reference, replace(settings or FitSettings(), **changes), progress)
+
+
+def compare(
+    reference: Reference,
+    settings: FitSettings | None = None,
+    *,
+    out: str | Path | None = None,
+    overwrite: bool = False,
+    progress: CompareProgress | None = None,
+    **changes: Unpack[FitKeywords],
+) -> ComparisonModel:
+    """Fit a reference four ways: two-stage and concurrent, with cylinders and with cones.
+
+    Args:
+        reference: what is to be approximated.
+        settings: tolerance, limits, tilt and restarts; feature and method are those of the four columns.
+        out: folder for compare.json, written whole or not at all; None to write nothing.
+        overwrite: replace what cadpanel wrote there before.
+        progress: told feature, method, round and largest excess over a tolerance.
+        changes: settings to change.
+
+    Raises:
+        PanelError: a panel's faces are nothing that a feature could approximate.
+        SettingsError: a setting is out of its range.
+        DeliveryError: the folder is refused or cannot be written.
+    """
+    from cadpanel.delivery.compare import compare as compare_reference
+    from cadpanel.delivery.compare import write_comparison_folder
+
+    comparison = compare_reference(reference, replace(settings or FitSettings(), **changes), progress=progress)
+    if out is not None:
+        write_comparison_folder(comparison, Path(out), overwrite=overwrite)
+    return comparison
+
+
+def deliver(
+    result: FitResult,
+    out: str | Path,
+    *,
+    thickness: float = 3.0,
+    skin_side: SkinSide = "outer",
+    schema: Schema = "AP242",
+    overwrite: bool = False,
+    progress: DeliveryProgress | None = None,
+) -> ReportModel:
+    """Write a delivery folder whole or not at all: panels.step, skins.step, and report.json with the proof.
+
+    Args:
+        result: the fitted panels.
+        out: the folder; an existing one is refused unless `overwrite` is set.
+        thickness: of the sheet, mm.
+        skin_side: "outer": the skin is the sheet's outer face; "inner": its inner one.
+        schema: of the STEP files, "AP242" or "AP214".
+        overwrite: replace an existing delivery.
+        progress: told the step ("build", "write", "verify"), how much of it is done, and of how much.
+
+    Returns:
+        What report.json holds.
+
+    Raises:
+        SettingsError: the thickness, side or schema is none.
+        PanelError: a panel cannot be built.
+        DeliveryError: the folder is refused or cannot be written.
+        ProofError: what was written is not what was promised; nothing is left.
+    """
+    from cadpanel.delivery.deliver import deliver as deliver_result
+    from cadpanel.delivery.sheet import SheetSettings
+
+    sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
+    return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
+
+
+def to_cadquery(
+    panels: FitResult | PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+) -> cadquery.Workplane:
+    """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
+
+    Args:
+        panels: a result, or one of its shapes.
+        thickness: of the sheet, mm.
+        skin_side: "outer" or "inner".
+
+    Raises:
+        PanelError: a panel cannot be built.
+        SettingsError: the thickness or side is none.
+    """
+    from cadpanel.brep.adapters import to_cadquery_shape, to_workplane
+
+    solids = [panel.solid for panel in _build(panels, thickness, skin_side)]
+    return to_workplane(solids[0]).newObject([to_cadquery_shape(solid) for solid in solids])
+
+
+@overload
+def to_build123d(panels: PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
+@overload
+def to_build123d(panels: FitResult, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Compound: ...
+def to_build123d(
+    panels: FitResult | PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+) -> build123d.Compound:
+    """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
+
+    Args:
+        panels: a result, or one of its shapes.
+        thickness: of the sheet, mm.
+        skin_side: "outer" or "inner".
+
+    Raises:
+        PanelError: a panel cannot be built.
+        SettingsError: the thickness or side is none.
+    """
+    from cadpanel.brep.adapters import to_build123d_compound, to_build123d_part
+
+    built = _build(panels, thickness, skin_side)
+    if isinstance(panels, PanelShape):
+        return to_build123d_part(built[0].solid, panels.name)
+    return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+
+
+def write_step(
+    panels: FitResult | PanelShape,
+    path: str | Path,
+    *,
+    thickness: float = 3.0,
+    skin_side: SkinSide = "outer",
+    skins: bool = False,
+    schema: Schema = "AP242",
+) -> None:
+    """Write one STEP file, one product a panel with its name; for a folder with the proof beside it, see `deliver`.
+
+    Args:
+        panels: a result, or one of its shapes.
+        path: the file; one that is there is replaced once the new one is complete.
+        thickness: of the sheet, mm.
+        skin_side: "outer" or "inner".
+        skins: write the skins as open shells instead of the solids.
+        schema: "AP242" or "AP214".
+
+    Raises:
+        PanelError: a panel cannot be built.
+        DeliveryError: the file cannot be written.
+        SettingsError: the thickness, side or schema is none.
+    """
+    from cadpanel.delivery.files import write_skins, write_solids
+
+    built = _build(panels, thickness, skin_side, schema)
+    (write_skins if skins else write_solids)(Path(path), built, _title(panels), schema)
+
+
+def _build(
+    panels: FitResult | PanelShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
+) -> tuple[BuiltPanel, ...]:
+    from cadpanel.delivery.build import build_panels
+    from cadpanel.delivery.sheet import SheetSettings
+
+    sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
+    return build_panels([panels] if isinstance(panels, PanelShape) else panels.shapes, sheet)
+
+
+def _title(panels: FitResult | PanelShape) -> str:
+    return panels.name if isinstance(panels, PanelShape) else Path(panels.reference.source).stem

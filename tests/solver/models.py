@@ -1,0 +1,172 @@
+"""Small sums of squares for the solver, which knows nothing of panels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.solver.blocks import BlockPattern, Normal
+from cadpanel.solver.hold import Hold
+
+Array = NDArray[np.float64]
+Residual = Callable[[Array], Array]
+
+
+def pattern(count: int, size: int, pairs: list[tuple[int, int]]) -> BlockPattern:
+    """A pattern of coupled blocks."""
+    return BlockPattern(count, size, np.array(pairs, dtype=np.intp).reshape(-1, 2))
+
+
+def strip(count: int) -> list[tuple[int, int]]:
+    """Each block coupled to the next."""
+    return [(i, i + 1) for i in range(count - 1)]
+
+
+def ring(count: int) -> list[tuple[int, int]]:
+    """A closed strip."""
+    return [*strip(count), (0, count - 1)]
+
+
+def grid(rows: int, columns: int) -> list[tuple[int, int]]:
+    """Blocks side by side in rows and columns."""
+    right = [(r * columns + c, r * columns + c + 1) for r in range(rows) for c in range(columns - 1)]
+    down = [(r * columns + c, (r + 1) * columns + c) for r in range(rows - 1) for c in range(columns)]
+    return right + down
+
+
+def shuffled(pairs: list[tuple[int, int]], count: int, seed: int) -> list[tuple[int, int]]:
+    """The same couplings with the blocks renumbered at random."""
+    where = np.random.default_rng(seed).permutation(count)
+    return sorted((min(where[i], where[j]), max(where[i], where[j])) for i, j in pairs)
+
+
+@dataclass
+class Separate:
+    """One residual function on every block by itself; block k scales its residuals by `scale[k]`."""
+
+    residual: Residual
+    jacobian: Residual
+    pattern: BlockPattern
+    scale: Array
+
+    def cost(self, unknowns: Array) -> Array:
+        """Half the squares, block by block."""
+        squares: Array = np.sum(np.array([self.residual(u) for u in unknowns]) ** 2, axis=1)
+        return 0.5 * self.scale**2 * squares
+
+    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
+        """The Gauss-Newton model."""
+        normal = Normal.zero(len(unknowns), unknowns.shape[1], len(self.pattern.pairs))
+        for k, u in enumerate(unknowns):
+            r, j = self.scale[k] * self.residual(u), self.scale[k] * self.jacobian(u)
+            normal.gradient[k], normal.diagonal[k] = j.T @ r, j.T @ j
+        return self.cost(unknowns), normal
+
+
+def rosenbrock(u: Array) -> Array:
+    """Rosenbrock's valley (1960); its minimum is 0 at (1, 1)."""
+    return np.array([10.0 * (u[1] - u[0] ** 2), 1.0 - u[0]])
+
+
+def rosenbrock_jacobian(u: Array) -> Array:
+    """Derivatives of `rosenbrock`."""
+    return np.array([[-20.0 * u[0], 10.0], [-1.0, 0.0]])
+
+
+def powell(u: Array) -> Array:
+    """Powell's singular function (1962); its minimum is 0 at the origin, where the Jacobian loses rank."""
+    a, b, c, d = u
+    return np.array([a + 10.0 * b, np.sqrt(5.0) * (c - d), (b - 2.0 * c) ** 2, np.sqrt(10.0) * (a - d) ** 2])
+
+
+def powell_jacobian(u: Array) -> Array:
+    """Derivatives of `powell`."""
+    a, b, c, d = u
+    s, t = np.sqrt(5.0), np.sqrt(10.0)
+    return np.array(
+        [
+            [1.0, 10.0, 0.0, 0.0],
+            [0.0, 0.0, s, -s],
+            [0.0, 2.0 * (b - 2.0 * c), -4.0 * (b - 2.0 * c), 0.0],
+            [2.0 * t * (a - d), 0.0, 0.0, -2.0 * t * (a - d)],
+        ]
+    )
+
+
+class HeldPoints:
+    """Points that want to be at their targets, held near fixed centres: half the squared distance, |x - centre| <= tau.
+
+    The solution is known: the target's projection onto the ball.
+    """
+
+    def __init__(self, targets: Array, centres: Array, radius: Array, *, weight: float = 1.0) -> None:
+        """`targets` and `centres` (points, d), `radius` (points,)."""
+        self.targets, self.centres = targets, centres
+        self.hold = Hold(radius[:, None], weight=weight, least=1e-9)
+        self.pattern = pattern(targets.shape[0], targets.shape[1], [])
+
+    def vectors_at(self, unknowns: Array) -> Array:
+        """(points, 1, d) from the centres."""
+        vectors: Array = (unknowns - self.centres)[:, None]
+        return vectors
+
+    def free_cost(self, unknowns: Array) -> float:
+        """The cost without the held part."""
+        return 0.5 * float(np.sum((unknowns - self.targets) ** 2))
+
+    def cost(self, unknowns: Array) -> Array:
+        """Target and held part together."""
+        cost: Array = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
+        cost += 0.5 * self.hold.weight[:, 0] * np.sum((unknowns - self.centres) ** 2, axis=1)
+        return cost
+
+    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
+        """The model, which is exact."""
+        normal = Normal.zero(unknowns.shape[0], unknowns.shape[1], 0)
+        weight = self.hold.weight
+        normal.gradient += unknowns - self.targets + weight * (unknowns - self.centres)
+        normal.diagonal += (1.0 + weight)[..., None] * np.eye(unknowns.shape[1])
+        return self.cost(unknowns), normal
+
+
+class HeldChain:
+    """Neighbours in a chain held near each other: |x_k+1 - x_k| <= tau while each wants to be at its target."""
+
+    def __init__(self, targets: Array, radius: float) -> None:
+        """`targets` (points, d)."""
+        self.targets = targets
+        self.hold = Hold(np.full((len(targets) - 1, 1), radius), weight=1.0, least=1e-9)
+        self.pattern = pattern(targets.shape[0], targets.shape[1], strip(len(targets)))
+
+    def vectors_at(self, unknowns: Array) -> Array:
+        """(points - 1, 1, d) from each to the next."""
+        vectors: Array = np.diff(unknowns, axis=0)[:, None]
+        return vectors
+
+    def free_cost(self, unknowns: Array) -> float:
+        """The cost without the held part."""
+        return 0.5 * float(np.sum((unknowns - self.targets) ** 2))
+
+    def cost(self, unknowns: Array) -> Array:
+        """Target and held part together."""
+        cost: Array = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
+        cost[:-1] += 0.5 * self.hold.weight[:, 0] * np.sum(np.diff(unknowns, axis=0) ** 2, axis=1)
+        return cost
+
+    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
+        """The model, which is exact."""
+        count, size = unknowns.shape
+        normal = Normal.zero(count, size, count - 1)
+        pull = self.hold.weight * np.diff(unknowns, axis=0)
+        normal.gradient += unknowns - self.targets
+        normal.gradient[:-1] -= pull
+        normal.gradient[1:] += pull
+        block = self.hold.weight[..., None] * np.eye(size)
+        normal.diagonal += np.eye(size)
+        normal.diagonal[:-1] += block
+        normal.diagonal[1:] += block
+        normal.coupling -= block
+        return self.cost(unknowns), normal

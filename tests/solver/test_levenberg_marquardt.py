@@ -1,0 +1,122 @@
+"""Classic problems of least squares, alone and side by side."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
+from tests.solver.models import (
+    HeldChain,
+    Separate,
+    pattern,
+    powell,
+    powell_jacobian,
+    rosenbrock,
+    rosenbrock_jacobian,
+)
+
+# Powell's function has no curvature at its minimum: the iteration halves the distance at every step.
+TIGHT = Stopping(cost=1e-14, iterations=300)
+few = settings(max_examples=10)
+
+
+def side_by_side(residual, jacobian, starts, scale=None):
+    count, size = starts.shape
+    return Separate(residual, jacobian, pattern(count, size, []), np.ones(count) if scale is None else scale)
+
+
+def test_rosenbrocks_valley_is_followed_to_its_end():
+    start = np.array([[-1.2, 1.0]])
+    solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
+    assert solution.converged.all()
+    assert solution.unknowns == pytest.approx(np.ones((1, 2)), abs=1e-8)
+    assert solution.cost == pytest.approx(0.0, abs=1e-16)
+
+
+def test_powells_singular_function_is_solved_where_its_jacobian_loses_rank():
+    start = np.array([[3.0, -1.0, 0.0, 1.0]])
+    solution = levenberg_marquardt(side_by_side(powell, powell_jacobian, start), start, TIGHT)
+    assert solution.unknowns == pytest.approx(0.0, abs=1e-3)
+    assert solution.cost == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("residual", "jacobian", "start"),
+    [(rosenbrock, rosenbrock_jacobian, [-1.2, 1.0]), (powell, powell_jacobian, [3.0, -1.0, 0.0, 1.0])],
+)
+@few
+@given(seed=st.integers(0, 2**32 - 1))
+def test_each_component_goes_the_way_it_goes_alone(residual, jacobian, start, seed):
+    random = np.random.default_rng(seed)
+    starts = np.array(start) + random.normal(size=(6, len(start)))
+    scale = 10.0 ** random.uniform(-3, 3, 6)
+    together = levenberg_marquardt(side_by_side(residual, jacobian, starts, scale), starts, TIGHT)
+    for k in range(6):
+        one = starts[k : k + 1]
+        alone = levenberg_marquardt(side_by_side(residual, jacobian, one, scale[k : k + 1]), one, TIGHT)
+        assert together.unknowns[k] == pytest.approx(alone.unknowns[0], abs=1e-9)
+        assert together.converged[k] == alone.converged[0]
+
+
+@few
+@given(seed=st.integers(0, 2**32 - 1))
+def test_the_cost_never_rises(seed):
+    starts = 2.0 * np.random.default_rng(seed).normal(size=(5, 2))
+    model = side_by_side(rosenbrock, rosenbrock_jacobian, starts)
+    before = model.cost(starts)
+    for iterations in range(1, 12):
+        after = levenberg_marquardt(model, starts, Stopping(iterations=iterations))
+        assert np.all(after.cost <= before)
+        assert after.cost == pytest.approx(model.cost(after.unknowns), rel=1e-12)
+        before = after.cost
+
+
+def test_a_linear_problem_of_coupled_blocks_is_solved_exactly():
+    targets = np.random.default_rng(4).normal(size=(6, 3))
+    chain = HeldChain(targets, 1.0)
+    solution = levenberg_marquardt(chain, np.zeros((6, 3)), TIGHT)
+    _, there = chain.linearize(solution.unknowns)
+    assert there.gradient == pytest.approx(0.0, abs=1e-7)
+    assert solution.cost.shape == (1,)
+
+
+def test_a_component_that_begins_at_its_minimum_stays_there():
+    starts = np.array([[1.0, 1.0], [-1.2, 1.0]])
+    solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, starts), starts, TIGHT)
+    assert np.array_equal(solution.unknowns[0], [1.0, 1.0])
+    assert solution.unknowns[1] == pytest.approx([1.0, 1.0], abs=1e-8)
+
+
+def test_an_unknown_that_no_residual_sees_stays_where_it_was():
+    def blind(u):
+        return np.array([u[0] - 3.0])
+
+    def blind_jacobian(_):
+        return np.array([[1.0, 0.0]])
+
+    start = np.array([[0.0, 5.0]])
+    solution = levenberg_marquardt(side_by_side(blind, blind_jacobian, start), start, TIGHT)
+    assert solution.unknowns[0] == pytest.approx([3.0, 5.0], abs=1e-6)
+
+
+def test_running_out_of_iterations_is_told():
+    start = np.array([[-1.2, 1.0]])
+    solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, Stopping(iterations=3))
+    assert not solution.converged.any()
+    assert solution.iterations == 3
+
+
+def test_a_trial_that_makes_no_sense_is_refused():
+    """A logarithm: the first full step leads to where it does not exist."""
+
+    class Logarithm(Separate):
+        def cost(self, unknowns):
+            with np.errstate(invalid="ignore"):
+                cost = 0.5 * np.log(unknowns[:, 0]) ** 2
+            return np.where(np.isfinite(cost), cost, np.inf)
+
+    start = np.array([[10.0]])
+    model = Logarithm(lambda u: np.log(u), lambda u: np.diag(1.0 / u), pattern(1, 1, []), np.ones(1))
+    solution = levenberg_marquardt(model, start, TIGHT)
+    assert solution.unknowns == pytest.approx(np.ones((1, 1)), abs=1e-7)

@@ -70,6 +70,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refuse(str(error))
     except KeyboardInterrupt:
         status = EXIT_INTERRUPTED
+    except ImportError as error:
+        # While the kernel's binding loads, an interrupt comes out as the failure of its import.
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
+        status = EXIT_INTERRUPTED
     if status == EXIT_INTERRUPTED:
         sys.stderr.write("Interrupted.\n")
     return status if isinstance(status, int) else 0

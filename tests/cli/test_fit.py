@@ -1,0 +1,283 @@
+"""`cadpanel fit`: what is delivered, with which exit code, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopExp import TopExp_Explorer
+
+from cadpanel.delivery.build import BuiltPanel
+from cadpanel.delivery.files import write_solids
+from cadpanel.delivery.report import read_report
+from cadpanel.delivery.sheet import Schema
+from tests.cli.conftest import Run
+from tests.reference_shapes import Array, Lip, kernel_face, kernel_lip, write_products
+
+PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
+
+
+# ------------------------------------------------------------------------------------------------------- it goes well
+def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
+    assert sorted(path.name for path in delivered.iterdir()) == ["panels.step", "report.json", "skins.step"]
+    assert list(delivered.parent.iterdir()) == [delivered]
+
+
+def test_the_report_says_what_was_asked_and_what_came_of_it(delivered: Path) -> None:
+    report = read_report(delivered / "report.json")
+    assert [panel.name for panel in report.panels] == ["N-01", "N-02", "N-03"]
+    assert [seam.panels for seam in report.seams] == [("N-01", "N-02"), ("N-02", "N-03")]
+    assert report.reference.file == "lip.step"
+    assert report.settings.gap_tolerance == 1.0
+    assert report.summary.tolerance_met
+    assert report.summary.max_seam_gap <= 1.0
+    assert report.certificate.solids == report.certificate.skins == 3
+    assert report.certificate.face_kinds == {"plane": 24, "cone": 6, "cylinder": 0, "other": 0}
+    assert report.certificate.max_tangency_error < 1e-11
+    assert report.certificate.volume_error < 1e-11
+    assert all(getattr(report.timing, step) > 0.0 for step in ("read", "fit", "build", "write", "verify"))
+
+
+def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, lip_step: Path, tmp_path: Path) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out")
+    assert answer.code == 0
+    for words in ("Largest corner gap, mm", "Hausdorff", "two-stage", "Certificate: 3 solids valid", "tmp", "Written"):
+        assert words in answer.out
+    assert answer.err == ""
+
+
+def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--quiet")
+    assert (answer.code, answer.out, answer.err) == (0, "", "")
+
+
+def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
+    options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --thickness 5 --skin-side inner --schema AP214"
+    options += " --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
+    answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
+    assert answer.code == 0, answer.err
+    settings = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["settings"]
+    assert settings["cadpanel_version"]
+    del settings["cadpanel_version"]
+    assert settings == {
+        "feature": "plane-cylinder-plane",
+        "tilt": "free",
+        "method": "concurrent",
+        "gap_tolerance": 3.0,
+        "drift_along": 0.04,
+        "drift_across": 0.015,
+        "weights": None,
+        "restarts": 1,
+        "seed": 7,
+        "seam_tolerance": 0.5,
+        "thickness": 5.0,
+        "skin_side": "inner",
+        "step_schema": "AP214",
+    }
+    assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
+    assert run("verify", tmp_path / "out").code == 0
+
+
+def test_weights_take_the_place_of_a_tolerance(run: Run, lip_step: Path, tmp_path: Path) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--weights", "drift=1e-3, gap=2")
+    assert answer.code == 0, answer.err
+    settings = read_report(tmp_path / "out" / "report.json").settings
+    assert settings.gap_tolerance is None
+    assert settings.weights is not None
+    assert (settings.weights.gap, settings.weights.deviation, settings.weights.drift) == (2.0, 1.0, 1e-3)
+
+
+def test_a_single_panel_has_no_seam_and_is_fine(run: Run, tmp_path: Path) -> None:
+    path = write_products(tmp_path / "one.step", [("alone", kernel_lip(Lip()))])
+    answer = run("fit", path, "--out", tmp_path / "out")
+    assert answer.code == 0, answer.err
+    assert read_report(tmp_path / "out" / "report.json").summary.max_corner_gap == 0.0
+    assert "1 panel, 0 seams" in answer.out
+
+
+def test_panels_that_do_not_touch_have_no_seam_and_are_fine(run: Run, tmp_path: Path) -> None:
+    lips = [("a", kernel_lip(Lip())), ("b", kernel_lip(Lip(start=5000.0)))]
+    answer = run("fit", write_products(tmp_path / "two.step", lips), "--out", tmp_path / "out", "--quiet")
+    assert answer.code == 0, answer.err
+    assert read_report(tmp_path / "out" / "report.json").seams == ()
+
+
+# ---------------------------------------------------------------------------------------------- it misses its promise
+def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_step: Path, tmp_path: Path) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--method", "local")
+    assert answer.code == 1
+    assert "not met" in answer.out
+    assert "the seam between 'N-0" in answer.err
+    assert answer.err.count("\n") == 1
+    assert not read_report(tmp_path / "out" / "report.json").summary.tolerance_met
+    again = run("verify", tmp_path / "out")
+    assert again.code == 0
+    assert "the report says that its tolerance is not met" in again.out
+
+
+def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
+    run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def lose_one(path: Path, panels: tuple[BuiltPanel, ...], title: str, schema: Schema) -> None:
+        write_solids(path, panels[:-1], title, schema)
+
+    monkeypatch.setattr("cadpanel.delivery.deliver.write_solids", lose_one)
+    answer = run("fit", lip_step, "--out", tmp_path / "out")
+    assert answer.code == 1
+    assert "Panel 'N-03' is missing among the solids." in answer.err
+    assert list(tmp_path.iterdir()) == []
+
+
+# ------------------------------------------------------------------------------------------------------------ refusals
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("--gap-tolerance nan", "gap tolerance"),
+        ("--gap-tolerance -1", "gap tolerance"),
+        ("--gap-tolerance inf", "gap tolerance"),
+        ("--gap-tolerance some", "--gap-tolerance"),
+        ("--thickness nan", "sheet thickness"),
+        ("--thickness 0", "sheet thickness"),
+        ("--thickness -3", "sheet thickness"),
+        ("--drift-along nan", "--drift-along"),
+        ("--drift-across -1", "--drift-across"),
+        ("--drift-along 80", "between 0.01 and 50 percent"),
+        ("--restarts -1", "restarts"),
+        ("--seed -1", "seed"),
+        ("--seam-tolerance nan", "seam tolerance"),
+        ("--seam-tolerance 0", "seam tolerance"),
+        ("--feature cube", "plane-cone-plane"),
+        ("--method magic", "'local', 'two_stage', 'concurrent'"),
+        ("--tilt half", "'free', 'fixed'"),
+        ("--skin-side left", "'outer', 'inner'"),
+        ("--schema AP203", "'AP242', 'AP214'"),
+        ("--weights gap=1 --gap-tolerance 1", "either --weights or --gap-tolerance"),
+        ("--weights gap=1 --method local", "local method"),
+        ("--weights gap", "gap"),
+        ("--weights gap=1,gap=2", "at most once"),
+        ("--weights gap=x", "a number for gap"),
+        ("--weights gap=nan", "gap weight"),
+        ("--weights drift=0", "must be above 0"),
+        ("--weights speed=1", "speed=1"),
+    ],
+)
+def test_a_setting_that_is_none_is_refused_in_one_sentence(
+    run: Run, lip_step: Path, tmp_path: Path, options: str, words: str
+) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert words in answer.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_existing_folder_is_refused_before_the_reference_is_read(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    answer = run("fit", "no such file.step", "--out", tmp_path / "out")
+    assert answer.code == 2
+    assert answer.is_one_sentence()
+    assert "exists already" in answer.err
+
+
+def test_overwrite_replaces_a_delivery(run: Run, lip_step: Path, delivery: Path) -> None:
+    (delivery / "left over.txt").write_text("old")
+    answer = run("fit", lip_step, "--out", delivery, "--overwrite", "--quiet")
+    assert answer.code == 0, answer.err
+    assert not (delivery / "left over.txt").exists()
+
+
+def saddle(u: Array, v: Array) -> Array:
+    x, y = 500.0 * (u - 1.5), 2000.0 * (v - 0.5)
+    return np.stack([x, y, 1e-3 * (x**2 - y**2)], axis=-1)
+
+
+def bad_files(folder: Path, good: Path) -> dict[str, tuple[Path, str]]:
+    text = good.read_text(encoding="utf-8")
+    ball = BRepPrimAPI_MakeSphere(1000.0)
+    sphere = TopExp_Explorer(ball.Shape(), TopAbs_FACE).Current()
+
+    files = {
+        "missing": (folder / "missing.step", "missing.step"),
+        "folder": (folder, "is a folder"),
+        "not STEP": (folder / "photo.step", "photo.step"),
+        "empty": (folder / "empty.step", "empty.step"),
+        "truncated": (folder / "cut.step", "cut.step"),
+        "solid": (write_products(folder / "s.step", [("block", BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape())]), "block"),
+        "sphere": (write_products(folder / "b.step", [("ball", sphere)]), "ball"),
+        "saddle": (write_products(folder / "h.step", [("horse", kernel_face(saddle))]), "horse"),
+        "twice": (write_products(folder / "d.step", [("one", kernel_lip(Lip())), ("two", kernel_lip(Lip()))]), "two"),
+        "thick": (good, "N-0"),
+    }
+    (folder / "photo.step").write_bytes(b"\x89PNG\r\n")
+    (folder / "empty.step").write_text("")
+    (folder / "cut.step").write_text(text[: len(text) // 2])
+    return files
+
+
+@pytest.mark.parametrize(
+    "what", ["missing", "folder", "not STEP", "empty", "truncated", "solid", "sphere", "saddle", "twice", "thick"]
+)
+def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
+    run: Run, lip_step: Path, tmp_path: Path, what: str
+) -> None:
+    (tmp_path / "in").mkdir()
+    path, words = bad_files(tmp_path / "in", lip_step)[what]
+    answer = run("fit", path, "--out", tmp_path / "deep" / "out", *(["--thickness", "2000"] if what == "thick" else []))
+    assert answer.code == 2, answer.err
+    assert answer.is_one_sentence(), answer.err
+    assert words in answer.err
+    assert [path.name for path in tmp_path.iterdir()] == ["in"]
+
+
+def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path: Path) -> None:
+    """A limit on the size of a file stands for the full disk: the operating system refuses the write alike."""
+    answer = subprocess.run(
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000)),
+    )
+    assert answer.returncode == 2
+    assert answer.stderr.count("\n") == 1
+    assert "out' cannot be written" in answer.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("after", [0.5, 6.0], ids=["while the kernel loads", "while it fits"])
+def test_an_interrupt_leaves_nothing(lip_step: Path, tmp_path: Path, after: float) -> None:
+    with subprocess.Popen(
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--restarts", "1000"],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as process:
+        give_up = time.monotonic() + 60.0
+        while not list(tmp_path.glob(".cadpanel-*")) and time.monotonic() < give_up:
+            time.sleep(0.05)
+        time.sleep(after)
+        os.kill(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.splitlines()[-1] == "Interrupted."
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_goes_to_a_file_is_plain_text(lip_step: Path, tmp_path: Path) -> None:
+    answer = subprocess.run(
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out")], capture_output=True, text=True, timeout=120
+    )
+    assert answer.returncode == 0
+    assert answer.stderr == ""
+    assert "\x1b" not in answer.stdout
+    assert max(map(len, answer.stdout.splitlines())) <= 200

@@ -1,0 +1,108 @@
+"""`cadpanel verify`: a delivery proves itself from its files, and tampering is found out and named."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cadpanel.brep.step import read_step_shapes
+from tests.cli.conftest import Run
+
+
+def test_an_untouched_delivery_holds(run: Run, delivered: Path) -> None:
+    answer = run("verify", delivered)
+    assert (answer.code, answer.err) == (0, "")
+    assert "Everything holds." in answer.out
+    assert run("verify", delivered, "--quiet").out == ""
+
+
+def edit(folder: Path, change: Callable[[dict[str, Any]], None]) -> None:
+    path = folder / "report.json"
+    report = json.loads(path.read_text(encoding="utf-8"))
+    change(report)
+    path.write_text(json.dumps(report), encoding="utf-8")
+
+
+def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
+    def change(report: Any) -> None:
+        for step in steps[:-1]:
+            report = report[step]
+        report[steps[-1]] = value(report[steps[-1]]) if callable(value) else value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (put("panels", 1, "volume", value=lambda v: v * 1.0001), "Panel 'N-02': its solid has a volume"),
+        (put("panels", 0, "corners", 0, 0, 0, value=lambda v: v + 1.0), "Panel 'N-01'"),
+        (put("panels", 2, "patches", 1, "apex", 0, value=lambda v: v + 1.0), "Panel 'N-03': the report's cone"),
+        (put("panels", 2, "patches", 1, "half_angle", value=lambda v: v * 1.01), "Panel 'N-03': the report's cone"),
+        (put("panels", 2, "patches", 1, "radius_max", value=lambda v: v - 1.0), "Panel 'N-03': the report's cone"),
+        (put("panels", 0, "patches", 2, "normal", value=[0.0, 0.0, 1.0]), "Panel 'N-01': the report's plane"),
+        (put("panels", 0, "name", value="N-09"), "names the panel 'N-01'"),
+        (put("seams", 0, "corner_gaps", 0, value=0.0), "Seam 'N-01' to 'N-02': the corner gaps"),
+        (put("seams", 1, "max_corner_gap", value=0.5), "Seam 'N-02' to 'N-03': the largest corner gap"),
+        (put("seams", 1, "max_seam_gap", value=0.01), "Seam 'N-02' to 'N-03': the gap is"),
+        (put("summary", "max_corner_gap", value=0.5), "max_corner_gap"),
+        (put("summary", "max_deviation", value=0.5), "max_deviation"),
+        (put("summary", "hausdorff", value=0.5), "hausdorff"),
+        (put("settings", "gap_tolerance", value=0.1), "calls the tolerance of 0.1 mm met"),
+        (put("certificate", "solids", value=4), "solids = 4"),
+        (put("certificate", "valid", value=False), "valid"),
+        (put("certificate", "max_seam_gap", value=0.1), "max_seam_gap"),
+        (put("certificate", "failures", value=["Panel 'N-02' is bent."]), "Panel 'N-02' is bent."),
+    ],
+)
+def test_a_number_that_was_changed_is_named(
+    run: Run, delivery: Path, change: Callable[[dict[str, Any]], None], words: str
+) -> None:
+    edit(delivery, change)
+    answer = run("verify", delivery)
+    assert answer.code in (1, 2), answer.out
+    assert words in answer.err
+    assert "Everything holds." not in answer.out
+
+
+def test_a_step_file_of_another_delivery_is_found_out(run: Run, delivery: Path) -> None:
+    text = (delivery / "panels.step").read_text(encoding="ascii")
+    assert "'N-02'" in text
+    (delivery / "panels.step").write_text(text.replace("'N-02'", "'N-07'"), encoding="ascii")
+    answer = run("verify", delivery)
+    assert answer.code == 1
+    assert "Panel 'N-02' is missing among the solids." in answer.err
+    assert "Panel 'N-07'" in answer.err
+
+
+def test_skins_in_the_place_of_panels_are_found_out(run: Run, delivery: Path) -> None:
+    (delivery / "panels.step").write_bytes((delivery / "skins.step").read_bytes())
+    assert len(read_step_shapes(delivery / "panels.step")) == 3
+    answer = run("verify", delivery)
+    assert answer.code == 1
+    assert "Panel 'N-01': its solid holds 0 solids" in answer.err
+
+
+@pytest.mark.parametrize("name", ["report.json", "panels.step", "skins.step"])
+@pytest.mark.parametrize("fault", ["missing", "empty", "cut", "binary"])
+def test_a_file_that_cannot_be_read_is_one_sentence(run: Run, delivery: Path, name: str, fault: str) -> None:
+    path = delivery / name
+    content = path.read_bytes()
+    path.unlink()
+    if fault != "missing":
+        path.write_bytes({"empty": b"", "cut": content[: len(content) // 2], "binary": b"\x00\xff" * 100}[fault])
+    answer = run("verify", delivery)
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert name in answer.err
+
+
+def test_a_folder_that_is_none_is_one_sentence(run: Run, tmp_path: Path) -> None:
+    for folder in (tmp_path / "nowhere", tmp_path):
+        answer = run("verify", folder)
+        assert answer.code == 2
+        assert answer.is_one_sentence()

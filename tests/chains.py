@@ -116,7 +116,11 @@ def made_problem(of: Feature, seed: int, *, panels: int = 4, length: float = 200
         deviation=Deviation(
             np.ascontiguousarray(np.moveaxis(samples, 2, 0)), np.sqrt(random.uniform(0.5, 1.5, samples.shape[:2]))
         ),
-        outline=Outline(corners + 0.03 * random.normal(size=corners.shape), along),
+        outline=Outline(
+            corners + 0.03 * random.normal(size=corners.shape),
+            along,
+            np.array([0.0, 1.0, 0.0]) + 0.2 * random.normal(size=(panels, 2, 3)),
+        ),
         lengths=np.ones(panels),
         seams=seams,
         pairs=pairs.astype(np.intp),

@@ -75,7 +75,7 @@ def measure(problem: Problem, reference: Reference, unknowns: Array) -> Measures
     outline = _outline_distances(problem, reference, state)
     largest = np.maximum(np.max(np.abs(distance) * (weight > 0.0), axis=1), outline.max(axis=1))
     drift = problem.outline.drift(state) * length
-    along = np.einsum("pesx,pesx->pes", drift, problem.outline.along)
+    along = np.einsum("pesx,pesx->pes", drift, problem.outline.gauge)
     across = np.linalg.norm(drift - along[..., None] * problem.outline.along, axis=-1)
     gaps = np.linalg.norm(problem.corner_gap(1.0).vectors(state), axis=-1) * length
     first, second = _seam_ends(problem, state)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cadpanel.features.feature import Feature
 from cadpanel.features.walk import pierce, walk
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.start import SampleArrays, Start
+from cadpanel.fitting.start import SampleArrays, Start, end_plane
 from cadpanel.reference.model import Reference
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.terms.arc import ArcGap
@@ -128,6 +128,7 @@ def _outline(reference: Reference, feature: Feature, begin: Start) -> Outline:
     chords = sides[:, 1] - sides[:, 0]
     chords = np.einsum("psx,pxa->psa", chords, begin.axes) / np.linalg.norm(chords, axis=-1)[..., None]
     corners, along = np.empty_like(started), np.empty_like(started)
+    end_normals = np.empty((*started.shape[:2], 3))
     share = np.linspace(0.0, 1.0, started.shape[2])[None, :, None]
     along[:] = ((1.0 - share) * chords[:, None, 0] + share * chords[:, None, 1])[:, None]
     along /= np.linalg.norm(along, axis=-1, keepdims=True)
@@ -136,7 +137,8 @@ def _outline(reference: Reference, feature: Feature, begin: Start) -> Outline:
             line = (panel.ends[end] - begin.origins[i]) @ begin.axes[i] / begin.length
             nearest = np.argmin(np.linalg.norm(line[None] - started[i, end, 1:-1, None], axis=-1), axis=1)
             corners[i, end] = line[[0, *nearest, -1]]
-    return Outline(corners, along)
+            end_normals[i, end] = end_plane(line, tilt=True)[1]
+    return Outline(corners, along, end_normals)
 
 
 def _seams(reference: Reference) -> tuple[Seams, IntArray]:

@@ -25,6 +25,8 @@ _BLEND_SHARE = 0.2
 # A fold below this angle (radians) cannot be told from a flat panel.
 _LEAST_FOLD = np.radians(2.0)
 _LEAST_WEIGHT = 1e-12
+# An end that is nearly straight does not tell its plane's tilt: singular values below this share are left out.
+_LEAST_SINGULAR = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,15 +193,25 @@ def _lay_flanges(reference: Reference, feature: Feature, start_: Start) -> None:
 
 
 def _lay_cuts(reference: Reference, feature: Feature, start_: Start) -> None:
-    """Lay each cut plane through the outline's end by least squares: t = position - skew b - tilt n."""
+    """Lay each cut plane through the outline's end."""
     for end in (0, 1):
         where = feature.cut_slice(end).start
-        columns = [0, 2] if feature.numbers[where + 2].fixed is None else [0]
+        free = feature.numbers[where + 2].fixed is None
         for i, panel in enumerate(reference.panels):
             local = (panel.ends[end] - start_.origins[i]) @ start_.axes[i] / start_.length
-            matrix = np.column_stack([np.ones(len(local)), -local[:, columns]])
-            solution = np.linalg.lstsq(matrix, local[:, 1], rcond=1e-6)[0]
-            start_.values[i, where : where + len(solution)] = solution
+            position, normal = end_plane(local, tilt=free)
+            start_.values[i, where : where + 3] = position, normal[0], normal[2]
+
+
+def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:
+    """The plane m . x = position through an end by least squares, m = (skew, 1, tilt), tilt 0 unless it is wanted.
+
+    `line` (q, 3) runs along the end, in the axes b, t, n of a panel.
+    """
+    columns = [0, 2] if tilt else [0]
+    matrix = np.column_stack([np.ones(len(line)), -line[:, columns]])
+    solution = np.linalg.lstsq(matrix, line[:, 1], rcond=_LEAST_SINGULAR)[0]
+    return float(solution[0]), np.array([solution[1], 1.0, solution[2] if tilt else 0.0])
 
 
 def _local(points: Array, start_: Start) -> Array:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.geometry.frames import dot
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.hold import Hold
 from cadpanel.terms.rows import Rows, add_rows
@@ -25,17 +26,23 @@ class Outline:
 
     Inside the fold a panel has corners too, where its flanges begin. Where across the fold they lie is a matter of the
     fit, but along the strip they belong on the reference's end like the outer ones: otherwise a cut plane could tilt
-    far out of the end while its outer corners stay.
+    far out of the end while its outer corners stay. How far they are from the end is told in the direction of the
+    strip, so that a corner may slide along an end that runs askew.
 
     Attributes:
         corners: (panels, 2, k + 1, 3) points on the reference's ends [end, ruling] in the panels' own frames and the
             solver's length; the first and the last are the outline's corners.
         along: (panels, 2, k + 1, 3) unit direction of the strip there; that of the free edge at the outer corners.
+        gauge: (panels, 2, k + 1, 3) vectors whose inner product with a drift is the drift along the strip: `along`
+            itself at the outer corners, at the inner ones the normal m of the end's plane over m . along.
     """
 
-    def __init__(self, corners: Array, along: Array) -> None:
-        """Keep the arrays."""
+    def __init__(self, corners: Array, along: Array, end_normals: Array) -> None:
+        """Besides the attributes takes the normals (panels, 2, 3) of planes through the reference's ends."""
         self.corners, self.along = corners, along
+        self.gauge = along.copy()
+        inner = along[:, :, 1:-1]
+        self.gauge[:, :, 1:-1] = end_normals[:, :, None] / dot(end_normals[:, :, None], inner)[..., None]
 
     def drift(self, state: State) -> Array:
         """(panels, 2, k + 1, 3) from the reference's corners to the panels'."""
@@ -55,7 +62,7 @@ class DriftLimit:
         rulings = outline.corners.shape[2]
         self._rulings = np.array([0, rulings - 1]) if across else np.arange(rulings)
         along = outline.along[:, :, self._rulings]
-        onto = along[..., :, None] * along[..., None, :]
+        onto = along[..., :, None] * outline.gauge[:, :, self._rulings][..., None, :]
         self._part = np.eye(3) - onto if across else onto
         held = 2 * len(self._rulings)
         self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, least=LEAST_PULL)

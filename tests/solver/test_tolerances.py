@@ -1,5 +1,7 @@
 """Held vectors: convex problems whose constrained optimum is known."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -68,9 +70,13 @@ def test_a_held_chain_reaches_the_constrained_minimum(seed, radius):
     targets = np.random.default_rng(seed).normal(size=(4, 2))
     model = HeldChain(targets, radius)
     found = solve(model, targets.copy())
+
+    def cost(x: NDArray[np.float64]) -> float:
+        return model.free_cost(x.reshape(4, 2))
+
     limits = NonlinearConstraint(lambda x: np.sum(np.diff(x.reshape(4, 2), axis=0) ** 2, axis=1), -np.inf, radius**2)
-    start: NDArray[np.float64] = np.tile(targets.mean(axis=0), 4).astype(np.float64)
-    exact = minimize(lambda x: model.free_cost(x.reshape(4, 2)), start, constraints=limits, method="SLSQP")
+    start = np.tile(targets.mean(axis=0), 4)
+    exact: Any = minimize(cost, start, constraints=limits, method="SLSQP")
     assert exact.success
     assert model.free_cost(found.unknowns) == pytest.approx(exact.fun, rel=5e-3)
 

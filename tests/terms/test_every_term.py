@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.walk import cut_planes
 from cadpanel.fitting.problem import Objective, Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.blocks import Normal
@@ -195,7 +196,7 @@ def renumbered(case, order):
             origins=p.place.origins[order], centre=p.place.centre, axes=p.place.axes[order], length=p.place.length
         ),
         deviation=Deviation(np.ascontiguousarray(p.deviation.samples[:, order]), p.deviation.roots[order]),
-        outline=Outline(p.outline.corners[order], p.outline.along[order]),
+        outline=Outline(p.outline.corners[order], p.outline.along[order], p.outline.gauge[order, :, 1]),
         lengths=p.lengths[order],
         seams=Seams(panels=panels, ends=ends, reversed=p.seams.reversed, pair=p.seams.pair),
         pairs=panels,
@@ -212,15 +213,16 @@ def flipped(case, panel):
     axes, samples = p.place.axes.copy(), p.deviation.samples.copy()
     axes[panel] *= HALF_TURN
     samples[:, panel] *= HALF_TURN[:, None]
-    corners, along = p.outline.corners.copy(), p.outline.along.copy()
+    corners, along, end_normals = p.outline.corners.copy(), p.outline.along.copy(), p.outline.gauge[:, :, 1].copy()
     corners[panel] = corners[panel, ::-1, ::-1] * HALF_TURN
     along[panel] = along[panel, ::-1, ::-1] * HALF_TURN
+    end_normals[panel] = end_normals[panel, ::-1] * HALF_TURN
     here = p.seams.panels == panel
     problem = replace(
         p,
         place=Placement(origins=p.place.origins, centre=p.place.centre, axes=axes, length=p.place.length),
         deviation=Deviation(samples, p.deviation.roots),
-        outline=Outline(corners, along),
+        outline=Outline(corners, along, end_normals),
         seams=replace(
             p.seams, ends=np.where(here, 1 - p.seams.ends, p.seams.ends), reversed=p.seams.reversed ^ here.any(axis=1)
         ),
@@ -329,10 +331,24 @@ def test_drift_is_split_into_along_and_across(seed):
     assert np.abs(np.sum(outer * sideways, axis=-1)).max() <= 1e-14
 
 
+def test_inner_corners_may_slide_along_an_end_that_runs_askew():
+    """Corners of the same cut plane lie on one plane: moved within it they stay on the reference's end."""
+    problem, unknowns, _ = setup("drift along", "plane-cone-plane", 8)
+    state = problem.state(unknowns)
+    end_normals, _ = cut_planes(state.walked)
+    sliding = np.cross(end_normals, [0.3, 0.2, 0.9])[:, :, None] * np.array([0.0, 0.1, -0.05, 0.0])[:, None]
+    for shift, bound in ((sliding, 1e-24), (sliding + 1e-6 * end_normals[:, :, None], np.inf)):
+        outline = Outline(state.corners.position + shift, problem.outline.along, end_normals)
+        there = cost("drift along", Case(replace(problem, outline=outline), unknowns))
+        assert there.max() <= bound
+    assert there.min() > 1e-24
+
+
 def test_a_corner_on_its_reference_has_no_drift_and_one_off_it_has():
     problem, unknowns, _ = setup("drift along", "plane-cone-plane", 2)
     state = problem.state(unknowns)
-    there = replace(problem, outline=Outline(state.corners.position, problem.outline.along))
+    outline = problem.outline
+    there = replace(problem, outline=Outline(state.corners.position, outline.along, outline.gauge[:, :, 1]))
     assert all(cost(term, Case(there, unknowns)).sum() == 0.0 for term in ("drift along", "drift across"))
     unknowns[0, 0] += 1e-6
     assert all(cost(term, Case(there, unknowns))[0] > 0.0 for term in ("drift along", "drift across"))

@@ -1,0 +1,81 @@
+"""The names that a Python program uses, from `import cadpanel as cp`."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+
+import build123d as bd
+import cadquery as cq
+import pytest
+
+import cadpanel as cp
+from cadpanel.api import FitKeywords
+from cadpanel.brep.step import read_step_shapes
+from tests.delivered import fitted, strip
+
+
+def test_the_keywords_of_fit_are_the_fields_of_its_settings() -> None:
+    assert set(FitKeywords.__annotations__) == {field.name for field in fields(cp.FitSettings) if field.init}
+
+
+def test_keywords_change_the_settings_that_are_given() -> None:
+    result = cp.fit(strip(), cp.FitSettings(gap_tolerance=2.0, seed=3), method="local")
+    assert (result.settings.gap_tolerance, result.settings.seed, result.settings.method) == (2.0, 3, "local")
+
+
+def test_a_setting_that_is_none_is_a_settings_error() -> None:
+    with pytest.raises(cp.SettingsError, match="gap tolerance"):
+        cp.fit(strip(), gap_tolerance=float("nan"))
+
+
+def test_solids_are_the_kernels_own() -> None:
+    shape = fitted().shape("N 2")
+    assert type(cp.build_solid(shape, 3.0)).__name__ == "TopoDS_Solid"
+    assert type(cp.build_skin(shape)).__name__ == "TopoDS_Shell"
+
+
+def test_cadquery_gets_one_solid_a_panel() -> None:
+    panels = cp.to_cadquery(fitted(), thickness=4.0)
+    assert isinstance(panels, cq.Workplane)
+    assert [type(solid) for solid in panels.vals()] == [cq.Solid] * 3
+    one = cp.to_cadquery(fitted().shapes[1], thickness=4.0)
+    assert one.val().Volume() == pytest.approx(panels.vals()[1].Volume(), rel=1e-12)
+
+
+def test_build123d_gets_named_children_and_a_part() -> None:
+    facade = cp.to_build123d(fitted())
+    assert isinstance(facade, bd.Compound)
+    assert [child.label for child in facade.children] == ["N 1", "N 2", "N 3"]
+    part = cp.to_build123d(fitted().shapes[0])
+    assert isinstance(part, bd.Part)
+    assert part.label == "N 1"
+    assert part.volume == pytest.approx(facade.children[0].volume, rel=1e-12)
+
+
+def test_solids_and_skins_are_written_with_their_names(tmp_path: Path) -> None:
+    cp.write_step(fitted(), tmp_path / "solids.step", thickness=3.0)
+    cp.write_step(fitted(), tmp_path / "skins.step", skins=True)
+    cp.write_step(fitted().shapes[1], tmp_path / "one.step")
+    for name, expected in (("solids", ["N 1", "N 2", "N 3"]), ("skins", ["N 1", "N 2", "N 3"]), ("one", ["N 2"])):
+        assert [product for product, _ in read_step_shapes(tmp_path / f"{name}.step")] == expected
+
+
+def test_a_delivery_is_written_and_verified(tmp_path: Path) -> None:
+    report = cp.deliver(fitted(), tmp_path / "out", thickness=2.0, skin_side="inner", schema="AP214")
+    assert (report.settings.thickness, report.settings.skin_side) == (2.0, "inner")
+    verification = cp.verify(tmp_path / "out")
+    assert isinstance(verification, cp.Verification)
+    assert verification.holds
+
+
+@pytest.mark.slow
+def test_a_comparison_is_written_where_asked_and_only_there(tmp_path: Path) -> None:
+    comparison = cp.compare(strip(), gap_tolerance=20.0, out=tmp_path / "out")
+    assert len(comparison.columns) == 4
+    assert [path.name for path in tmp_path.rglob("*")] == ["out", "compare.json"]
+
+
+def test_every_error_is_a_cadpanel_error() -> None:
+    errors = (cp.ReferenceFileError, cp.PanelError, cp.SettingsError, cp.DeliveryError, cp.ProofError)
+    assert all(issubclass(error, cp.CadpanelError) for error in errors)

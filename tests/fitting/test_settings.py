@@ -1,0 +1,69 @@
+"""Settings that make no sense are refused with one sentence; those at the edge of sense are not."""
+
+import math
+from typing import Any
+
+import pytest
+
+from cadpanel.errors import SettingsError
+from cadpanel.fitting.settings import FitSettings, Weights
+
+NUMBERS = ("gap_tolerance", "drift_along", "drift_across", "restarts", "seed")
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, -1.0, -1e-12])
+def test_numbers_that_are_none_infinite_or_negative_are_refused(name, value):
+    how: dict[str, Any] = {name: value}
+    with pytest.raises(SettingsError, match="must be"):
+        FitSettings(**how)
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        ("gap_tolerance", 1e-3, None),
+        ("drift_along", 1e-4, 0.5),
+        ("drift_across", 1e-4, 0.5),
+        ("restarts", 0, 1000),
+        ("seed", 0, None),
+    ],
+)
+def test_numbers_may_be_at_the_ends_of_their_ranges_but_not_beyond(name, least, most):
+    how: dict[str, Any] = {name: least}
+    assert getattr(FitSettings(**how), name) == least
+    for beyond in (least - 1e-4, *([] if most is None else [most + 1e-4])):
+        how = {name: beyond}
+        with pytest.raises(SettingsError, match=f"not {beyond:g}".replace("+", r"\+")):
+            FitSettings(**how)
+    if most is not None:
+        how = {name: most}
+        assert getattr(FitSettings(**how), name) == most
+
+
+@pytest.mark.parametrize("name", ["gap", "deviation", "drift"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1.0])
+def test_weights_that_are_none_infinite_or_negative_are_refused(name, value):
+    how: dict[str, Any] = {name: value}
+    with pytest.raises(SettingsError, match=f"{name} weight"):
+        Weights(**how)
+
+
+def test_a_gap_may_weigh_nothing_but_deviation_and_drift_may_not():
+    assert Weights(gap=0.0).gap == 0.0
+    for name in ("deviation", "drift"):
+        how: dict[str, Any] = {name: 0.0}
+        with pytest.raises(SettingsError, match="wander off"):
+            Weights(**how)
+
+
+@pytest.mark.parametrize(("name", "value"), [("method", "annealing"), ("tilt", "loose"), ("feature", "sphere")])
+def test_words_that_are_not_known_are_refused_with_those_that_are(name, value):
+    how: dict[str, Any] = {name: value}
+    with pytest.raises(SettingsError, match=r"concurrent|free|plane-cone-plane"):
+        FitSettings(**how)
+
+
+def test_local_fits_take_no_weights():
+    with pytest.raises(SettingsError, match="takes no weights"):
+        FitSettings(method="local", weights=Weights())

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import build123d
     import cadquery
 
-    from cadpanel.delivery.build import BuiltPanel
+    from cadpanel.delivery.build import PanelSheet
     from cadpanel.delivery.build import Progress as DeliveryProgress
     from cadpanel.delivery.compare import Progress as CompareProgress
     from cadpanel.delivery.comparison import ComparisonModel
@@ -231,7 +231,7 @@ def write_step(
 
 def _build(
     panels: FitResult | PanelShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
-) -> tuple[BuiltPanel, ...]:
+) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.build import build_panels
     from cadpanel.delivery.sheet import SheetSettings
 

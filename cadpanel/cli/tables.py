@@ -21,7 +21,7 @@ _MEASURES: dict[str, Callable[[SummaryModel], str]] = {
     "Largest seam gap, mm": lambda s: length(s.max_seam_gap),
     "Largest kink, degrees": lambda s: f"{s.max_kink:.2f}",
     "RMS deviation, mm": lambda s: length(s.rms_deviation),
-    "  of each panel alone": lambda s: multiple(s.local_rms_multiple),
+    "  against each alone": lambda s: multiple(s.local_rms_multiple),
     "Largest deviation, mm": lambda s: length(s.max_deviation),
     "Hausdorff distance, mm": lambda s: length(s.hausdorff),
     "Largest drift along, mm": lambda s: f"{s.max_drift_along:.1f}",

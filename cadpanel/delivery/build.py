@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cadpanel.brep.occt import Shell, Solid
-from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_solid
+from cadpanel.brep.solid import build_panel
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.geometry.shape import PanelShape
-from cadpanel.geometry.straighten import straighten
 from cadpanel.geometry.volume import sheet_volume, skin_area
 
 # What is going on, how much of it is done, and of how much.
@@ -18,8 +16,8 @@ Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BuiltPanel:
-    """A panel as an exact solid, and the formula's numbers to hold it against.
+class PanelSheet:
+    """A panel's sheet as an exact solid, and the formula's numbers to hold it against.
 
     Attributes:
         shape: the panel as it is built: a cone that is all but a cylinder has become one.
@@ -42,34 +40,37 @@ class BuiltPanel:
 
 def build_panels(
     shapes: Sequence[PanelShape], sheet: SheetSettings, progress: Progress | None = None
-) -> tuple[BuiltPanel, ...]:
+) -> tuple[PanelSheet, ...]:
     """Build the sheet and the skin of every panel.
 
     Raises:
         PanelError: a panel cannot be built; the message names it, the reason and the remedy.
     """
-    return tuple(_each(shapes, sheet, progress))
+    tell = progress or say_nothing
+    built: list[PanelSheet] = []
+    tell("build", 0, len(shapes))
+    for shape in shapes:
+        built.append(_build(shape, sheet))
+        tell("build", len(built), len(shapes))
+    return tuple(built)
 
 
-def _each(shapes: Sequence[PanelShape], sheet: SheetSettings, progress: Progress | None) -> Iterator[BuiltPanel]:
-    for done, shape in enumerate(shapes):
-        if progress is not None:
-            progress("build", done, len(shapes))
-        yield _build(shape, sheet)
+def say_nothing(_step: str, _done: int, _of: int) -> None:
+    """The progress of those who did not ask for it."""
 
 
-def _build(shape: PanelShape, sheet: SheetSettings) -> BuiltPanel:
-    solid = build_solid(shape, sheet.thickness, sheet.skin_side)
-    straight = straighten(shape)
+def _build(shape: PanelShape, sheet: SheetSettings) -> PanelSheet:
+    built = build_panel(shape, sheet.thickness, sheet.skin_side)
+    straight = built.straightened
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
         for index in straight.patches
     )
-    return BuiltPanel(
+    return PanelSheet(
         shape=straight.shape,
-        solid=solid,
-        skin=build_skin(shape),
+        solid=built.solid,
+        skin=built.skin,
         area=skin_area(straight.shape),
         volume=sheet_volume(straight.shape, sheet.thickness, sheet.skin_side),
         moved=straight.largest_move,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
-from cadpanel.delivery.build import BuiltPanel, Progress, build_panels
+from cadpanel.delivery.build import PanelSheet, Progress, build_panels, say_nothing
 from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
@@ -68,7 +68,7 @@ def fill_delivery(
         seconds_to_read: how long reading the reference took, for the report.
         progress: told of the steps.
     """
-    tell = progress or _say_nothing
+    tell = progress or say_nothing
     began = time.perf_counter()
     built = build_panels(result.shapes, sheet, tell)
     panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
@@ -101,7 +101,7 @@ def fill_delivery(
     return report
 
 
-def _write(folder: Path, built: tuple[BuiltPanel, ...], title: str, sheet: SheetSettings, tell: Progress) -> None:
+def _write(folder: Path, built: tuple[PanelSheet, ...], title: str, sheet: SheetSettings, tell: Progress) -> None:
     tell("write", 0, 2)
     write_solids(folder / PANELS, built, title, sheet.schema)
     tell("write", 1, 2)
@@ -112,7 +112,3 @@ def _write(folder: Path, built: tuple[BuiltPanel, ...], title: str, sheet: Sheet
 def _demand(certificate: CertificateModel) -> None:
     if certificate.failures:
         raise ProofError(certificate.failures)
-
-
-def _say_nothing(_step: str, _done: int, _of: int) -> None:
-    pass

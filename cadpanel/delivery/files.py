@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cadpanel.brep.step import Color, write_step
-from cadpanel.delivery.build import BuiltPanel
+from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.sheet import Schema
 
 PALETTE: tuple[Color, ...] = (
@@ -18,7 +18,7 @@ PALETTE: tuple[Color, ...] = (
 """Quiet colours that tell neighbours apart, sRGB."""
 
 
-def write_solids(path: Path, panels: Sequence[BuiltPanel], title: str, schema: Schema = "AP242") -> None:
+def write_solids(path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242") -> None:
     """Write one solid a panel.
 
     Raises:
@@ -28,7 +28,7 @@ def write_solids(path: Path, panels: Sequence[BuiltPanel], title: str, schema: S
     write_step(path, shapes, title=f"{title} panels", schema=schema)
 
 
-def write_skins(path: Path, panels: Sequence[BuiltPanel], title: str, schema: Schema = "AP242") -> None:
+def write_skins(path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242") -> None:
     """Write one open shell a panel, under the same names and in the same colours.
 
     Raises:

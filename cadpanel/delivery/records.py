@@ -7,7 +7,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from cadpanel.delivery.build import BuiltPanel
+from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.patches import patch_models, vector
 from cadpanel.delivery.report import (
     BaselinesModel,
@@ -68,12 +68,12 @@ def baselines_record(result: FitResult) -> BaselinesModel:
     )
 
 
-def panel_records(result: FitResult, built: Sequence[BuiltPanel]) -> tuple[PanelModel, ...]:
+def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[PanelModel, ...]:
     """Every panel as it was fitted and built."""
     return tuple(_panel(result.measures, index, panel) for index, panel in enumerate(built))
 
 
-def _panel(measures: Measures, index: int, built: BuiltPanel) -> PanelModel:
+def _panel(measures: Measures, index: int, built: PanelSheet) -> PanelModel:
     low, high = (tuple(vector(corner) for corner in end) for end in built.shape.corners())
     return PanelModel(
         name=built.shape.name,

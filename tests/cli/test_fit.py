@@ -17,7 +17,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 
-from cadpanel.delivery.build import BuiltPanel
+from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.files import write_solids
 from cadpanel.delivery.report import read_report
 from cadpanel.delivery.sheet import Schema
@@ -128,7 +128,7 @@ def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_s
 def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lose_one(path: Path, panels: tuple[BuiltPanel, ...], title: str, schema: Schema) -> None:
+    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema) -> None:
         write_solids(path, panels[:-1], title, schema)
 
     monkeypatch.setattr("cadpanel.delivery.deliver.write_solids", lose_one)

@@ -18,7 +18,8 @@ from tests.shapes import folded_panel
 
 # A fit told in other words differs by rounding, which the iteration may amplify; millimetres.
 SAME = 1e-4
-PANELS = 3
+# Two panels show what one seam asks for; three have a middle one, which others hold from both sides.
+PANELS = 2
 
 
 @cache
@@ -51,7 +52,7 @@ def by_method(method, reference=None):
 
 @cache
 def _of_the_lip(method):
-    return by_method(method, lip())
+    return by_method(method, lip(3))
 
 
 def turn(seed):
@@ -125,7 +126,7 @@ def test_a_cylinder_stays_a_cylinder(method):
 @every_method
 def test_renumbering_panels_changes_nothing(method):
     order = [2, 0, 1]
-    again = by_method(method, renumbered(lip(), order))
+    again = by_method(method, renumbered(lip(3), order))
     assert np.abs(again - by_method(method)[order]).max() <= SAME
 
 
@@ -133,14 +134,14 @@ def test_renumbering_panels_changes_nothing(method):
 @pytest.mark.parametrize("far", [0.0, 1e6])
 def test_moving_the_reference_moves_the_panels(method, far):
     rotation, shift = turn(3), far * np.array([1.0, -0.5, 0.2])
-    again = by_method(method, moved(lip(), rotation, shift))
+    again = by_method(method, moved(lip(3), rotation, shift))
     assert np.abs(again - (by_method(method) @ rotation.T + shift)).max() <= SAME
 
 
 @every_method
 @pytest.mark.parametrize("panel", [0, 1])
 def test_a_panel_walked_from_its_other_end_is_the_same_panel(method, panel):
-    again = by_method(method, flipped(lip(), panel))
+    again = by_method(method, flipped(lip(3), panel))
     again[panel] = again[panel, ::-1, ::-1]
     assert np.abs(again - by_method(method)).max() <= SAME
 

@@ -11,6 +11,7 @@ from cadpanel.geometry.cone import cone_distance, plane_distance
 from cadpanel.geometry.frames import dot
 from cadpanel.geometry.seam import EndCurves, closest, seam_gap
 from cadpanel.geometry.shape import ConePatch
+from tests.known_panels import end_curve
 from tests.shapes import CHAINS, folded_panel, random_panel
 
 # Millimetres, on panels of 2 m that stand up to 20 m from the origin.
@@ -23,25 +24,6 @@ FAR_SHARE = 0.01
 few = settings(max_examples=20)
 seeds = st.integers(0, 10_000)
 chains = st.sampled_from(sorted(chain for chain in CHAINS if chain != "plane"))
-
-
-def end_curve(shape, end):
-    """One end of a panel as a batch of one."""
-    numbers = np.zeros((1, len(shape.patches), 3))
-    for i, patch in enumerate(shape.patches):
-        if isinstance(patch, ConePatch):
-            numbers[0, i] = patch.radius, patch.half_angle, patch.sweep
-    return EndCurves(
-        corners=shape.corners()[end][None],
-        p=shape.points[None],
-        t=shape.directions[None],
-        n=shape.normals[None],
-        radius=numbers[..., 0],
-        half_angle=numbers[..., 1],
-        sweep=numbers[..., 2],
-        cut_point=shape.cut_points[end][None],
-        cut_normal=shape.cut_normals[end][None],
-    )
 
 
 def shifted(curves, by):

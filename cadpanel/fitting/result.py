@@ -136,7 +136,7 @@ def pose(reference: Reference, settings: FitSettings) -> tuple[Problem, Array]:
 
 
 def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
-    """Whether every gap is within the tolerance and every drift within its limit; with weights there is none to miss."""
+    """Whether every gap and every drift is within its limit; with weights there is none to miss."""
     if settings.weights is not None:
         return True
     lengths = measures.lengths[:, None, None]

@@ -29,7 +29,7 @@ NO_MOTION = 1e-8
 # Millimetres, at coordinates of some metres.
 SAME_POINT = 1e-9
 
-few = settings(max_examples=8)
+few = settings(max_examples=5)
 seeds = st.integers(0, 2**32 - 1)
 every_feature = pytest.mark.parametrize("name", sorted(FEATURES))
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.geometry.cone import (
@@ -24,6 +24,7 @@ DIFFERENCES = 1e-8
 # Half angles through 0, as a fit passes them.
 SMALL = [0.0] + [sign * 10.0**-k for k in range(12, 1, -2) for sign in (1.0, -1.0)]
 
+many = settings(max_examples=40)
 seeds = st.integers(0, 2**32 - 1)
 radii = st.floats(0.1, 2.0).flatmap(lambda r: st.sampled_from([r, -r]))
 half_angles = st.sampled_from(SMALL) | st.floats(-0.5, 0.5)
@@ -62,12 +63,14 @@ def columns(points):
     return points.T[:, :, None]
 
 
+@many
 @given(seeds, radii, half_angles)
 def test_points_of_the_cone_have_no_distance(seed, radius, half_angle):
     feet, _, _, cone = place(seed, radius, half_angle)
     assert cone_distance(columns(feet), *cone) == pytest.approx(0.0, abs=ROUNDING)
 
 
+@many
 @given(seeds, radii, half_angles, st.floats(-0.9, 3.0))
 def test_distance_is_the_length_of_the_normal_to_the_surface(seed, radius, half_angle, share):
     feet, normals, room, cone = place(seed, radius, half_angle)
@@ -77,6 +80,7 @@ def test_distance_is_the_length_of_the_normal_to_the_surface(seed, radius, half_
     assert distance[:, 0] == pytest.approx(height, abs=1e-11)
 
 
+@many
 @given(seeds, radii, half_angles)
 def test_no_point_of_the_surface_is_nearer_than_the_distance_says(seed, radius, half_angle):
     feet, normals, room, cone = place(seed, radius, half_angle)
@@ -90,6 +94,7 @@ def test_no_point_of_the_surface_is_nearer_than_the_distance_says(seed, radius, 
     assert distance - 1e-12 <= nearest <= distance + 0.15 * (1.0 + abs(radius))
 
 
+@many
 @given(seeds, radii, half_angles)
 def test_the_normal_is_the_gradient_and_has_unit_length(seed, radius, half_angle):
     feet, normals, room, cone = place(seed, radius, half_angle)
@@ -100,6 +105,7 @@ def test_the_normal_is_the_gradient_and_has_unit_length(seed, radius, half_angle
     assert -inner[:, 0, 3:6] == pytest.approx(normals, abs=1e-10)
 
 
+@many
 @given(seeds, radii, half_angles)
 def test_derivatives_by_radius_and_half_angle_agree_with_finite_differences(seed, radius, half_angle):
     feet, normals, room, (p, t, n, r, g) = place(seed, radius, half_angle)
@@ -125,6 +131,7 @@ def moved_by(twist, p, *vectors):
     return [point, *(rotate_about(axis, angle, v) for v in vectors)]
 
 
+@many
 @given(seeds, radii, half_angles)
 def test_derivatives_by_the_twist_agree_with_finite_differences(seed, radius, half_angle):
     feet, normals, room, (p, t, n, r, g) = place(seed, radius, half_angle)
@@ -142,6 +149,7 @@ def test_derivatives_by_the_twist_agree_with_finite_differences(seed, radius, ha
         assert flat[..., j] == pytest.approx(change, abs=allowed)
 
 
+@many
 @given(seeds, radii)
 def test_the_distance_is_smooth_through_half_angle_zero(seed, radius):
     feet, normals, room, (p, t, n, r, zero) = place(seed, radius, 0.0)
@@ -156,6 +164,7 @@ def test_the_distance_is_smooth_through_half_angle_zero(seed, radius):
         assert there == pytest.approx(inner, abs=100.0 * abs(half_angle) / min(1.0, room.min()) + ROUNDING)
 
 
+@many
 @given(seeds, radii)
 def test_half_angle_zero_is_exactly_the_cylinder(seed, radius):
     feet, normals, room, (p, t, n, r, zero) = place(seed, radius, 0.0)
@@ -165,6 +174,7 @@ def test_half_angle_zero_is_exactly_the_cylinder(seed, radius):
     assert cone_distance(columns(x), p, t, n, r, zero)[:, 0] == pytest.approx(expected, abs=ROUNDING)
 
 
+@many
 @given(seeds, radii, half_angles, st.floats(-1.0, 1.0))
 def test_any_generatrix_describes_the_same_cone(seed, radius, half_angle, angle):
     feet, normals, room, (p, t, n, r, g) = place(seed, radius, half_angle)
@@ -176,6 +186,7 @@ def test_any_generatrix_describes_the_same_cone(seed, radius, half_angle, angle)
     assert cone_distance(x, *other, r, g) == pytest.approx(cone_distance(x, p, t, n, r, g), abs=1e-11)
 
 
+@many
 @given(seeds, half_angles)
 def test_a_very_large_radius_is_nearly_the_plane(seed, half_angle):
     p, _, t, n = ruling(seed, 5)
@@ -187,6 +198,7 @@ def test_a_very_large_radius_is_nearly_the_plane(seed, half_angle):
         assert bent == pytest.approx(flat, abs=1e-4)
 
 
+@many
 @given(seeds)
 def test_beyond_tells_the_two_sides_of_a_ruling(seed):
     p, b, t, n = ruling(seed, 5)

@@ -21,7 +21,7 @@ ROUNDING = 1e-8
 CLOSEST = 1e-6
 FAR_SHARE = 0.01
 
-few = settings(max_examples=20)
+few = settings(max_examples=12)
 seeds = st.integers(0, 10_000)
 chains = st.sampled_from(sorted(chain for chain in CHAINS if chain != "plane"))
 

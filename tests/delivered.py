@@ -13,15 +13,15 @@ from fixtures.lips import Lip
 LIP = Lip(
     panels=3,
     twist=(0.7, 1.1),
-    rise=(6.0,),
-    plan=(1.0,),
+    plan=(6.0,),
+    rise=(1.0,),
     fold=(100.0, 96.0),
     radius=(480.0, 430.0),
     lower=(500.0, 450.0),
     upper=(600.0, 550.0),
 )
 # Straight and all alike: every cone of it is a cylinder.
-STRAIGHT = Lip(panels=2, twist=(0.0,), rise=(0.0,), plan=(0.0,), fold=(90.0,), radius=(300.0,), crown=0.0, fullness=1.0)
+STRAIGHT = Lip(panels=2, twist=(0.0,), plan=(0.0,), rise=(0.0,), fold=(90.0,), radius=(300.0,), crown=0.0, fullness=1.0)
 
 
 @cache

@@ -26,7 +26,9 @@ def compare(
 ) -> None:
     """Fit a reference four ways, two-stage and all at once, with cylinders and with cones: one row a seam.
 
-    Nothing is built; compare.json holds the numbers. Exit codes: 0 the comparison is written; 2 refused.
+    Nothing is built; compare.json holds the numbers.
+
+    Exit codes: 0 the comparison is written; 2 refused.
     """
     settings = options.fit_settings(
         tilt=tilt,

@@ -47,8 +47,9 @@ def fit(
 ) -> None:
     """Fit panels to a reference and deliver them as exact solids, with the proof beside them.
 
-    The smallest deviation is found at which every gap stays within --gap-tolerance. Exit codes: 0 all is well; 1 it
-    ran, but the tolerance or the proof does not hold; 2 refused.
+    The smallest deviation is found at which every gap stays within --gap-tolerance.
+
+    Exit codes: 0 all is well; 1 it ran, but the tolerance or the proof does not hold; 2 refused.
     """
     began = time.perf_counter()
     settings = options.fit_settings(

@@ -22,7 +22,7 @@ TiltOption = Annotated[
 GapTolerance = Annotated[
     float | None,
     typer.Option(
-        "--gap-tolerance", metavar="MM", help="Largest gap between neighbours, along whole seams.  [default: 1]"
+        "--gap-tolerance", metavar="MM", help="Largest gap between neighbours, along whole seams; 1 if not given."
     ),
 ]
 WeightsOption = Annotated[

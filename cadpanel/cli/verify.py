@@ -18,8 +18,9 @@ def verify(
 ) -> None:
     """Read a delivery's files again and hold them against its report: solids, faces, tangency, volumes, names, gaps.
 
-    What needs the reference, deviation and drift, cannot be proved from a delivery alone. Exit codes: 0 all holds;
-    1 something does not, and it says what; 2 the folder or a file is missing or cannot be read.
+    What needs the reference, deviation and drift, cannot be proved from a delivery alone.
+
+    Exit codes: 0 all holds; 1 something does not, and it says what; 2 a file is missing or cannot be read.
     """
     with steps(quiet=quiet) as shown:
         shown.begin("Read back and verify", folder.name)

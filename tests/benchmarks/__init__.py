@@ -1,0 +1,1 @@
+"""Comparisons as commands; not tests, and nothing here asserts a time."""

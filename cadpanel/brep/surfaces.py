@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface, Geom_Plane, Geom_Surface
@@ -19,9 +20,12 @@ from cadpanel.geometry.shape import Array
 
 ARC_DEGREE = 11
 """Degree of a parameter curve on a cone; no more, as some readers stop at 11."""
-ARC_TURN = 1.7
-"""Radians of an arc that one polynomial of that degree follows to 2e-11 mm on building-size panels. One polynomial is
-checked by the kernel twice as fast as a spline of several spans."""
+ARC_POLES = (12, 13, 14, 16, 20, 24, 36, 48)
+"""Poles that are tried in turn. The kernel's exact check takes as long as there are spans, and one polynomial, the
+first of these, follows a quarter turn to 3e-12 mm."""
+ARC_ERROR = 2e-11
+"""How far off the arc its parameter curve may be, mm, before more poles are tried; in proportion more on a radius beyond
+a metre, where rounding rules."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,12 +51,13 @@ class RoundSurface(PatchSurface):
     """A cone or cylinder, located at the panel's own level (the apex may be 1e12 mm away).
 
     A point at sweep angle phi and height s along the generatrix has parameters u = pi + sense * (phi - sweep / 2) and
-    v = sense * (s - level): the patch lies around u = pi, clear of the surface's seam.
+    v = sense * (s - level): the patch lies around u = pi, clear of the surface's seam. `radius` is the one at `level`.
     """
 
     sense: int
     sweep: float
     level: float
+    radius: float
 
     def parameters(self, sweep_angles: Array, heights: Array) -> Array:
         """(m, 2) surface parameters at (m,) sweep angles and heights."""
@@ -78,7 +83,9 @@ def round_surface(patch_frame: AxisFrame, level: float) -> RoundSurface:
         if opening == 0.0
         else Geom_ConicalSurface(axes, abs(opening), abs(radius))
     )
-    return RoundSurface(surface=surface, agrees=side > 0, sense=sense, sweep=patch_frame.sweep, level=level)
+    return RoundSurface(
+        surface=surface, agrees=side > 0, sense=sense, sweep=patch_frame.sweep, level=level, radius=abs(radius)
+    )
 
 
 def generatrix_on_round(surface: RoundSurface, sweep_angle: float, start_height: float) -> Geom2d_Curve:
@@ -88,13 +95,22 @@ def generatrix_on_round(surface: RoundSurface, sweep_angle: float, start_height:
 
 
 def arc_on_round(surface: RoundSurface, section: EllipticSection) -> Geom2d_Curve:
-    """The arc in the parameter plane of the cone, with the parameter of the ellipse: an interpolated spline."""
-    poles = (ARC_DEGREE + 1) * max(1, math.ceil((section.stop - section.start) / ARC_TURN))
-    nodes, knots, inverse = _interpolation(poles)
-    parameters = section.start + (section.stop - section.start) * nodes
-    angles = section.sweep_angles(parameters)
-    angles += _whole_turns(angles, surface.sweep)
-    return _spline(inverse @ surface.parameters(angles, section.heights(parameters)), knots, section)
+    """The arc in the parameter plane of the cone, with the parameter of the ellipse: an interpolated spline.
+
+    It has the fewest poles by which it is as close as ARC_ERROR between its nodes, or the most that are tried.
+    """
+    allowed = ARC_ERROR * max(1.0, 1e-3 * surface.radius)
+    for poles in ARC_POLES:
+        form = _interpolation(poles)
+        parameters = section.start + (section.stop - section.start) * form.places
+        angles = section.sweep_angles(parameters)
+        angles += _whole_turns(angles, surface.sweep)
+        wanted = surface.parameters(angles, section.heights(parameters))
+        found = form.inverse @ wanted[:poles]
+        off = np.abs(form.between @ found - wanted[poles:]).max(axis=0)
+        if off[0] * surface.radius + off[1] <= allowed:
+            break
+    return _spline(found, form.knots, section)
 
 
 def _whole_turns(angles: Array, sweep: float) -> float:
@@ -102,15 +118,32 @@ def _whole_turns(angles: Array, sweep: float) -> float:
     return -2.0 * math.pi * round(float(angles.mean() - 0.5 * sweep) / (2.0 * math.pi))
 
 
-@lru_cache(maxsize=8)
-def _interpolation(poles: int) -> tuple[Array, Array, Array]:
-    """Nodes on [0, 1] crowded to the ends, the distinct knots, and the matrix from values at nodes to poles."""
+class _Interpolation(NamedTuple):
+    """A spline space on [0, 1].
+
+    Attributes:
+        places: (2 n - 1,) n nodes crowded to the ends, then the middles between them.
+        knots: (s + 1,) distinct knots of s spans.
+        inverse: (n, n) from values at the nodes to poles.
+        between: (n - 1, n) from poles to values at the middles.
+    """
+
+    places: Array
+    knots: Array
+    inverse: Array
+    between: Array
+
+
+@lru_cache(maxsize=len(ARC_POLES))
+def _interpolation(poles: int) -> _Interpolation:
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(poles) / (poles - 1))
+    places = np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])])
     inner = np.convolve(nodes, np.full(ARC_DEGREE, 1.0 / ARC_DEGREE), mode="valid")[1:-1]
     knots: Array = np.concatenate([[0.0], inner, [1.0]])
     clamped: Array = np.concatenate([np.zeros(ARC_DEGREE), knots, np.ones(ARC_DEGREE)])
-    matrix = BSpline.design_matrix(nodes, clamped, ARC_DEGREE).toarray()
-    return nodes, knots, np.asarray(np.linalg.inv(matrix), dtype=np.float64)
+    matrix = BSpline.design_matrix(places, clamped, ARC_DEGREE).toarray()
+    inverse = np.asarray(np.linalg.inv(matrix[:poles]), dtype=np.float64)
+    return _Interpolation(places=places, knots=knots, inverse=inverse, between=matrix[poles:])
 
 
 def _spline(poles: Array, knots: Array, section: EllipticSection) -> Geom2d_BSplineCurve:

@@ -28,6 +28,10 @@ _MARGIN = 1e-3
 # A local fit further off than this share of the panel's length is no fit, and normals further off are no skin.
 _HOPELESS_DEVIATION = 0.05
 _HOPELESS_TILT = np.radians(35.0)
+# No gap is closed at an RMS deviation beyond this multiple of the local fits', or this share of a panel's length where
+# the local fits are nearly exact: what comes then is no approximation of the reference any more.
+_MOST_MULTIPLE = 5.0
+_MOST_SHARE = 0.01
 # How often seams are tightened, and up to which excess that is worth trying.
 _TIGHTENINGS = 8
 _NEARLY = 2.0
@@ -86,7 +90,7 @@ def fit_two_stage(problem: Problem, local: Array, settings: FitSettings) -> Fitt
     limits = problem.drift_limits(settings, _MARGIN)
     everything = Objective(problem, [problem.deviation, gap, *limits], coupled=True)
     model = Subset(everything, local, problem.placement_unknowns())
-    return _balance(problem, model, limits, local[:, model.active], model.fill, None)
+    return _balance(problem, model, limits, local[:, model.active], model.fill, local=local)
 
 
 def fit_concurrent(problem: Problem, local: Array, settings: FitSettings, progress: Progress | None = None) -> Fitted:
@@ -99,14 +103,16 @@ def fit_concurrent(problem: Problem, local: Array, settings: FitSettings, progre
     random = np.random.default_rng(settings.seed)
     for attempt in range(settings.restarts + 1):
         start = local if attempt == 0 else local + _SHAKE * random.standard_normal(local.shape)
-        ends.append(_concurrent(problem, start, settings, progress))
+        ends.append(_concurrent(problem, start, local, settings, progress))
     scores = [_score(problem, end.unknowns, settings) for end in ends]
     best = int(np.argmin(scores))
     agreed = int(np.sum(np.array(scores) <= scores[best] * (1.0 + _AGREE)))
     return Fitted(ends[best].unknowns, sum(end.iterations for end in ends), agreed, len(ends))
 
 
-def _concurrent(problem: Problem, start: Array, settings: FitSettings, progress: Progress | None) -> Fitted:
+def _concurrent(
+    problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
+) -> Fitted:
     if settings.weights is not None:
         model = weighted_objective(problem, settings.weights)
         solution = levenberg_marquardt(model, start, Stopping(iterations=300))
@@ -116,7 +122,7 @@ def _concurrent(problem: Problem, start: Array, settings: FitSettings, progress:
     limits = problem.drift_limits(settings, _MARGIN)
     held: list[CornerGap | ArcGap | DriftLimit] = [corners, arcs, *limits]
     model = Objective(problem, [problem.deviation, *held], coupled=True)
-    found = _balance(problem, model, held, start, lambda unknowns: unknowns, progress)
+    found = _balance(problem, model, held, start, _as_it_is, local=local, progress=progress)
     iterations = found.iterations
     # Between the points that are held the curves may still part a little further: measure, tighten there, go on.
     for _ in range(_TIGHTENINGS):
@@ -126,7 +132,9 @@ def _concurrent(problem: Problem, start: Array, settings: FitSettings, progress:
         share = np.where(excess > 1.0, (1.0 - _MARGIN) / excess, 1.0)
         for gap in (corners, arcs):
             gap.hold.tighten(share)
-        found = _balance(problem, model, held, found.unknowns, lambda unknowns: unknowns, progress, _FINISH)
+        found = _balance(
+            problem, model, held, found.unknowns, _as_it_is, local=local, progress=progress, schedule=_FINISH
+        )
         iterations += found.iterations
     return Fitted(found.unknowns, iterations)
 
@@ -140,6 +148,10 @@ def weighted_objective(problem: Problem, weights: Weights) -> Objective:
         limit.hold.weight[:] = weights.drift / weights.deviation
         terms.append(limit)
     return Objective(problem, terms, coupled=True)
+
+
+def _as_it_is(unknowns: Array) -> Array:
+    return unknowns
 
 
 class _HeldTerm:
@@ -159,7 +171,9 @@ def _balance(
     held: Sequence[CornerGap | ArcGap | DriftLimit],
     start: Array,
     fill: Callable[[Array], Array],
-    progress: Progress | None,
+    *,
+    local: Array,
+    progress: Progress | None = None,
     schedule: Schedule = _WHOLE,
 ) -> Fitted:
     terms = [_HeldTerm(problem, term, fill) for term in held]
@@ -167,7 +181,9 @@ def _balance(
     def deviation(unknowns: Array) -> float:
         return float(problem.deviation.cost(problem.state(fill(unknowns))).sum())
 
-    solution = hold_tolerances(model, terms, deviation, start, schedule, progress)
+    best_alone = float(problem.deviation.cost(problem.state(local)).sum())
+    most = max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)
+    solution = hold_tolerances(model, terms, deviation, start, schedule, most_cost=most, progress=progress)
     return Fitted(fill(solution.unknowns), solution.iterations)
 
 

@@ -77,9 +77,15 @@ class FitResult:
                 f"the gap tolerance of {tolerance:g} mm is not met: the seam between '{a}' and '{b}' stays open by "
                 f"{gaps[worst]:.2f} mm; allow a larger gap or more drift"
             )
-        panel = self.reference.panels[int(np.argmax(m.drift.max(axis=(1, 2)) / m.lengths))].name
+        limits = (
+            ("along", m.drift_along, self.settings.drift_along),
+            ("across", m.drift_across, self.settings.drift_across),
+        )
+        way, drift, limit = max(limits, key=lambda kind: float((kind[1].max(axis=(1, 2)) / m.lengths).max()) / kind[2])
+        panel = int(np.argmax(drift.max(axis=(1, 2)) / m.lengths))
         return (
-            f"the drift limits are not met: panel '{panel}' leaves its outline by {m.drift.max():.1f} mm; "
+            f"the drift limits are not met: panel '{self.reference.panels[panel].name}' leaves its outline by "
+            f"{drift[panel].max():.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed; "
             "allow more drift or a larger gap"
         )
 

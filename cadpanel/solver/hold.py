@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 MOST_WEIGHT = 1e5
 
 # How the paces change, between which bounds, and how far a weight may leap in one round.
-_QUICKEN, _CALM, _PACES, _LEAP = 1.3, 0.6, (0.5, 8.0), 3.0
+_QUICKEN, _CALM, _PACES, _LEAP = 1.2, 0.5, (0.1, 2.0), 2.0
 _LEAST_RATIO = 1e-6
 
 

@@ -62,15 +62,16 @@ class DriftLimit:
         rulings = outline.corners.shape[2]
         self._rulings = np.array([0, rulings - 1]) if across else np.arange(rulings)
         along = outline.along[:, :, self._rulings]
-        onto = along[..., :, None] * outline.gauge[:, :, self._rulings][..., None, :]
-        self._part = np.eye(3) - onto if across else onto
+        gauge = outline.gauge[:, :, self._rulings][..., None, :]
+        # Rows that take from a drift what is limited: one number along the strip, three components across it.
+        self._part = np.eye(3) - along[..., :, None] * gauge if across else gauge
         held = 2 * len(self._rulings)
         self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, least=LEAST_PULL)
 
     def vectors(self, state: State) -> Array:
-        """(panels, corners, 3) the part of the corners' drift that is limited."""
+        """(panels, corners, 1 or 3) the part of the corners' drift that is limited."""
         drift = self.outline.drift(state)[:, :, self._rulings]
-        return (self._part @ drift[..., None]).reshape(len(drift), -1, 3)
+        return (self._part @ drift[..., None]).reshape(len(drift), -1, self._part.shape[-2])
 
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
@@ -84,9 +85,10 @@ class DriftLimit:
             raise ValueError("the state was walked without derivatives")
         roots = self.hold.roots()[..., None]
         residual = roots * self.vectors(state)
-        panels, corners = roots.shape[:2]
+        panels, corners, size = residual.shape
         moved = self._part @ state.corners.jacobian[:, :, self._rulings][..., state.walked.feature.free]
-        jacobian = (roots[..., None] * moved.reshape(panels, corners, 3, -1)).reshape(panels, 3 * corners, -1)
+        jacobian = roots[..., None] * moved.reshape(panels, corners, size, -1)
+        jacobian = jacobian.reshape(panels, corners * size, -1)
         return [Rows(residual.reshape(panels, -1), (np.arange(panels),), (jacobian,))]
 
     def add_to(self, normal: Normal, state: State) -> Array:

@@ -35,7 +35,7 @@ app = typer.Typer(add_completion=False)
 
 # Costs within this share of each other count as the same; our own solve goes on until far less is to be gained.
 SAME_COST = 1e-4
-OURS = Stopping(cost=1e-6, iterations=200)
+OURS = Stopping(cost=1e-5, iterations=200)
 
 
 @dataclass(frozen=True, slots=True)

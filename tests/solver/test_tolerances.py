@@ -23,7 +23,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def solve(model, start, schedule=TIGHT, progress=None):
-    return hold_tolerances(model, [model], model.free_cost, start, schedule, progress)
+    return hold_tolerances(model, [model], model.free_cost, start, schedule, progress=progress)
 
 
 @few
@@ -117,8 +117,14 @@ def test_what_cannot_be_held_is_told_by_an_excess_above_one():
 
     model = TwoHolds(np.zeros((1, 2)), np.array([[1.0, 0.0]]), np.array([0.9]))
     model.hold = Hold(np.array([[0.9, 0.9]]), weight=1.0, least=1e-9)
-    found = solve(model, np.zeros((1, 2)), Schedule(balance=20, close=10))
-    assert found.rounds == 30
+    told = []
+    found = solve(
+        model, np.zeros((1, 2)), Schedule(balance=20, close=10, patience=30), lambda round_, _: told.append(round_)
+    )
+    assert told == list(range(1, 31))
+    told.clear()
+    solve(model, np.zeros((1, 2)), Schedule(patience=3), lambda round_, _: told.append(round_))
+    assert len(told) < 30
     # In the middle both vectors have the length 1.
     assert found.excess == pytest.approx(1.0 / 0.9, rel=1e-3)
 

@@ -324,7 +324,7 @@ def test_drift_is_split_into_along_and_across(seed):
     problem, unknowns, _ = setup("drift along", "plane-cone-plane", seed)
     along, across = problem.drift_limits(FitSettings(), 0.0)
     state = problem.state(unknowns)
-    outer = along.vectors(state).reshape(problem.panels, 2, -1, 3)[:, :, [0, -1]]
+    outer = along.vectors(state).reshape(problem.panels, 2, -1, 1)[:, :, [0, -1]] * problem.outline.along[:, :, [0, -1]]
     drift = problem.outline.drift(state)[:, :, [0, -1]]
     sideways = across.vectors(state).reshape(problem.panels, 2, 2, 3)
     assert np.abs(outer + sideways - drift).max() <= 1e-14

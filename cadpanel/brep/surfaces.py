@@ -24,8 +24,8 @@ ARC_POLES = (12, 13, 14, 16, 20, 24, 36, 48)
 """Poles that are tried in turn. The kernel's exact check takes as long as there are spans, and one polynomial, the
 first of these, follows a quarter turn to 3e-12 mm."""
 ARC_ERROR = 2e-11
-"""How far off the arc its parameter curve may be, mm, before more poles are tried; in proportion more on a radius beyond
-a metre, where rounding rules."""
+"""How far off the arc its parameter curve may be, mm, before more poles are tried; in proportion more on a radius of
+more than a metre, where rounding rules."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,5 +1,6 @@
 """The certificate holds for what was delivered and fails for anything that was changed afterwards."""
 
+import subprocess
 from dataclasses import replace
 
 import numpy as np
@@ -208,6 +209,23 @@ def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
     monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     assert delivery.certify() == alone
+
+
+@pytest.mark.parametrize("dies", ["at once", "over the skins", "over the panels"])
+def test_a_second_interpreter_that_dies_costs_nothing_but_time(delivery, monkeypatch, dies):
+    alone = delivery.certify()
+    monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    script = {
+        "at once": "",
+        "over the skins": "import sys; sys.stdout.buffer.write(bytes(3))",
+        "over the panels": "import pickle, sys; pickle.dump([], sys.stdout.buffer); sys.stdin.buffer.read(1)",
+    }[dies]
+    start = subprocess.Popen
+    monkeypatch.setattr("subprocess.Popen", lambda command, **how: start([command[0], "-c", script], **how))
+    found = delivery.certify()
+    assert (found.solids, found.valid, found.volume_error) == (alone.solids, alone.valid, alone.volume_error)
+    assert found == alone or dies == "over the panels"
 
 
 @pytest.mark.parametrize("file", ["panels_step", "skins_step"])

@@ -1,0 +1,151 @@
+"""How long a delivery takes, against OCCT's own STEP writer on the same solids.
+
+    python -m tests.benchmarks.delivery --panels 1000
+
+A strip of that many panels is written as STEP like the fixtures and fitted panel by panel; neither is timed.
+Timed are reading that file, building the sheets, writing both files of the delivery and proving them, and, in the same
+process, OCCT's XCAF writer with names and its own settings (AP242, parameter curves on) on the same solids.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.read import read_reference
+from cadpanel.brep.silence import silence_kernel
+from cadpanel.delivery.build import PanelSheet, build_panels
+from cadpanel.delivery.files import write_skins, write_solids
+from cadpanel.delivery.names import PANELS, SKINS
+from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.fitting.methods import fit_local
+from cadpanel.fitting.result import pose
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.reference.model import Reference
+from fixtures.lips import Lip
+from fixtures.make_fixtures import Fixture, write
+
+Result = TypeVar("Result")
+
+# A strip may turn by so much over its whole length without meeting itself, degrees.
+WHOLE_TURN = 270.0
+
+
+def strip(panels: int) -> Lip:
+    """A lip of that many panels whose fold, radius and twist vary along it."""
+    return Lip(
+        panels=panels,
+        twist=(0.7, 1.1, -0.9, 0.8),
+        plan=(WHOLE_TURN / max(panels, 45),),
+        rise=(0.2 * WHOLE_TURN / max(panels, 45),),
+        fold=(102.0, 94.0, 98.0),
+        radius=(480.0, 300.0, 420.0, 260.0),
+        lower=(520.0, 430.0),
+        upper=(640.0, 540.0),
+    )
+
+
+def local_shapes(reference: Reference) -> tuple[PanelShape, ...]:
+    """Every panel fitted alone: enough to have something to build."""
+    posed, begin = pose(reference, FitSettings())
+    return panel_shapes(posed, reference, fit_local(posed, reference, begin).unknowns)
+
+
+def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet]) -> Certificate:
+    """The certificate of both files, every seam measured."""
+    expected = [
+        ExpectedPanel(name=one.shape.name, volume=one.volume, kinds=_kinds(one.shape), corners=one.shape.corners())
+        for one in built
+    ]
+    names = [panel.name for panel in reference.panels]
+    seams = [
+        ExpectedSeam(panels=(names[seam.panels[0]], names[seam.panels[1]]), ends=seam.ends) for seam in reference.seams
+    ]
+    return certify(folder / PANELS, folder / SKINS, expected, seams)
+
+
+def _kinds(shape: PanelShape) -> tuple[PatchKind, ...]:
+    cones: dict[bool, PatchKind] = {True: "cone", False: "cylinder"}
+    return tuple(cones[patch.half_angle != 0.0] if isinstance(patch, ConePatch) else "plane" for patch in shape.patches)
+
+
+def write_bare(path: Path, built: Sequence[PanelSheet]) -> None:
+    """What OCCT's XCAF writer makes of the same solids and names, left to its own settings."""
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    for panel in built:
+        label = tool.AddShape(panel.solid, False)
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(panel.shape.name, True))
+    writer = STEPCAFControl_Writer()
+    Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
+    writer.Transfer(document, STEPControl_AsIs)
+    if writer.Write(str(path)) != IFSelect_RetDone:
+        raise OSError(f"{path} could not be written")
+
+
+def timed(seconds: dict[str, float], step: str, work: Callable[[], Result]) -> Result:
+    """Do the work and note how long it took."""
+    began = time.perf_counter()
+    result = work()
+    seconds[step] = time.perf_counter() - began
+    return result
+
+
+def run(panels: int, folder: Path) -> dict[str, float]:
+    """Seconds of every step, the bare writer's last."""
+    silence_kernel()
+    file = folder / f"strip_{panels}.step"
+    if not file.exists():
+        write(Fixture(file=file.name, prefix="P", table=(), lip=strip(panels)), file)
+    seconds: dict[str, float] = {}
+    reference = timed(seconds, "read", lambda: read_reference(file))
+    shapes = local_shapes(reference)
+    built = timed(seconds, "build", lambda: build_panels(shapes, SheetSettings()))
+
+    def write_both() -> None:
+        write_solids(folder / PANELS, built, "strip")
+        write_skins(folder / SKINS, built, "strip")
+
+    timed(seconds, "write", write_both)
+    certificate = timed(seconds, "verify", lambda: prove(folder, reference, built))
+    if not certificate.holds:
+        raise SystemExit(f"the proof fails: {certificate.failures[0]}")
+    timed(seconds, "XCAF writer", lambda: write_bare(folder / "bare.step", built))
+    return seconds
+
+
+def main() -> None:
+    """See the module's text."""
+    parser = argparse.ArgumentParser(description="Time a delivery against OCCT's own STEP writer.")
+    parser.add_argument("--panels", type=int, default=1000)
+    parser.add_argument("--runs", type=int, default=1)
+    parser.add_argument("--folder", type=Path, help="keep the files there, and use the strip that is there")
+    chosen = parser.parse_args()
+    for _ in range(chosen.runs):
+        with tempfile.TemporaryDirectory() as temporary:
+            seconds = run(chosen.panels, chosen.folder or Path(temporary))
+        bare = seconds["XCAF writer"]
+        total = sum(seconds.values()) - bare
+        print(f"{chosen.panels} panels      s   times the bare writer")
+        for step, took in (*seconds.items(), ("together", total)):
+            print(f"{step:<12} {took:7.2f}   {took / bare:6.2f}")
+
+
+if __name__ == "__main__":
+    main()

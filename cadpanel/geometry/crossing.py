@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cadpanel.geometry.frames import cross
 from cadpanel.geometry.sections import axis_frame, cut_cone, elliptic_section
 from cadpanel.geometry.shape import Array, ConePatch, PanelShape
 
@@ -31,12 +32,15 @@ def crosses_itself(shape: PanelShape) -> bool:
 
 def _polyline_crosses(points: Array, normal: Array) -> bool:
     """Whether any two segments that are not neighbours cross, seen along `normal`."""
+    # What always goes forwards from its start towards its end cannot meet itself, and that is quick to see.
+    if (np.diff(points, axis=0) @ (points[-1] - points[0]) > 0.0).all():
+        return False
     start, stop = points[:-1], points[1:]
 
     def sides(origin: Array, toward: Array, others: Array) -> Array:
         """(m, m) on which side of segment i, from origin to toward, point j lies."""
         spans = (toward - origin)[:, None, :]
-        return np.asarray(np.cross(spans, others[None, :, :] - origin[:, None, :]) @ normal)
+        return np.asarray(cross(spans, others[None, :, :] - origin[:, None, :]) @ normal)
 
     splits = sides(start, stop, start) * sides(start, stop, stop) <= 0.0
     index = np.arange(len(start))

@@ -12,6 +12,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.geometry.frames import cross
+
 Array = NDArray[np.float64]
 
 
@@ -85,7 +87,7 @@ class PanelShape:
 
     def binormals(self) -> Array:
         """(k + 1, 3) unit b = t x n, the way the walk goes."""
-        return np.cross(self.directions, self.normals)
+        return cross(self.directions, self.normals)
 
     def offset(self, distance: float) -> PanelShape:
         """The parallel skin at `distance` mm along n (negative: inwards), cut by the same two planes.

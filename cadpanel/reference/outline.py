@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.errors import PanelError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_length, end_tangents, norm, unit
+from cadpanel.reference.polyline import arc_lengths, end_tangents, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
@@ -87,7 +87,7 @@ def check_faces(panel: RawPanel, source: str) -> None:
     if not panel.faces:
         raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
     for place, face in enumerate(panel.faces, start=1):
-        around = sum(float(arc_length(edge)[-1]) for edge in face.edges)
+        around = sum(float(lengths[-1]) for lengths in arc_lengths(face.edges))
         if len(face.points) == 0 or float(face.weights.sum()) <= SLIVER * around**2:
             raise PanelError(
                 panel.name,

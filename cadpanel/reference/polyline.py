@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +34,13 @@ def arc_length(points: Array) -> Array:
     lengths = np.zeros(points.shape[:-1])
     np.cumsum(norm(np.diff(points, axis=-2)), axis=-1, out=lengths[..., 1:])
     return lengths
+
+
+def arc_lengths(polylines: Sequence[Array]) -> Sequence[Array]:
+    """Return the `arc_length` of each of several polylines; those of a panel mostly have as many points each."""
+    if len({len(points) for points in polylines}) == 1:
+        return list(arc_length(np.array(polylines)))
+    return [arc_length(points) for points in polylines]
 
 
 def interpolate(lengths: Array, values: Array, positions: Array) -> Array:

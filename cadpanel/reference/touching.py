@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import STENCIL, arc_length, interpolate, norm
+from cadpanel.reference.polyline import STENCIL, arc_length, arc_lengths, interpolate, norm
 
 Array = NDArray[np.float64]
 
@@ -65,8 +65,9 @@ def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
     """Return the edges of all faces; those no longer than the tolerance (mm) are points and are left out."""
     edges = []
     for face, samples in enumerate(panel.faces):
-        for points, normals in zip(samples.edges, samples.edge_normals, strict=True):
-            lengths = arc_length(points)
+        for points, normals, lengths in zip(
+            samples.edges, samples.edge_normals, arc_lengths(samples.edges), strict=True
+        ):
             keep = np.concatenate([[True], np.diff(lengths) > SAME_POINT * lengths[-1]])
             if lengths[-1] > tolerance and keep.sum() >= STENCIL:
                 edges.append(Edge(face, points[keep], normals[keep], lengths[keep]))

@@ -53,17 +53,22 @@ class Hold:
         """The largest |v| / tau."""
         return float(self._ratio(vectors).max(initial=0.0))
 
-    def adapt(self, vectors: Array, *, only_grow: bool) -> None:
-        """Multiply the weights by (|v| / tau)^pace for the next inner solve.
+    def violation(self, vectors: Array) -> float:
+        """Sum of what exceeds 1 of all |v| / tau."""
+        return float(np.maximum(self._ratio(vectors) - 1.0, 0.0).sum())
+
+    def adapt(self, vectors: Array, *, only_grow: bool, aim: float = 1.0) -> None:
+        """Multiply the weights by (|v| / (aim tau))^pace for the next inner solve.
 
         A vector that stays on one side of its distance quickens its pace, one that jumps from side to side slows down
         (the rule of Rprop, Riedmiller and Braun 1993, on the logarithms of the weights).
 
         Args:
             vectors: (groups, vectors, d) at the last solution.
+            aim: share of the distances to settle at; a little below 1, all vectors hold before the last has settled.
             only_grow: leave the weights of short vectors alone, to close in on a solution that holds.
         """
-        ratio = np.maximum(self._ratio(vectors), _LEAST_RATIO)
+        ratio = np.maximum(self._ratio(vectors) / aim, _LEAST_RATIO)
         side = np.sign(np.log(ratio))
         self._pace = np.clip(self._pace * np.where(side == self._side, _QUICKEN, _CALM), *_PACES)
         self._side = side

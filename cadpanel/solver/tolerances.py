@@ -34,7 +34,8 @@ class Schedule:
         close: rounds at most after these in which weights only rise, until everything holds.
         steady: relative change of the free cost between two rounds below which it is at rest.
         slack: how far above its distance a vector may be for the balance to end.
-        patience: rounds without a smaller excess after which it moves on: from balance to close, from close to an end.
+        aim: share of the distances that the weights steer to.
+        patience: rounds without a smaller total violation after which it moves on: from balance to close, from close to an end.
         inner: stopping of the solve in a round.
     """
 
@@ -42,6 +43,7 @@ class Schedule:
     close: int = 40
     steady: float = 2e-3
     slack: float = 1e-3
+    aim: float = 1.0
     patience: int = 20
     inner: Stopping = field(default_factory=lambda: Stopping(cost=1e-3, iterations=5))
 
@@ -87,7 +89,7 @@ def hold_tolerances(
     """
     unknowns, iterations, last = start, 0, np.inf
     best: HeldSolution | None = None
-    closing_from, improved = schedule.balance, 0
+    closing_from, improved, least = schedule.balance, 0, np.inf
     for round_ in range(1, schedule.balance + schedule.close + 1):
         solution = levenberg_marquardt(model, unknowns, schedule.inner)
         unknowns, iterations = solution.unknowns, iterations + solution.iterations
@@ -102,8 +104,9 @@ def hold_tolerances(
         if excess <= 1.0 + (0.0 if closing else schedule.slack) and (closing or at_rest):
             return HeldSolution(unknowns, iterations, round_, excess)
         # All that holds is equally good; of these the last one is the most settled.
-        if best is None or excess < best.excess:
-            improved = round_
+        violation = sum(term.hold.violation(v) for term, v in zip(held, vectors, strict=True))
+        if violation < least:
+            least, improved = violation, round_
         if best is None or max(excess, 1.0) <= max(best.excess, 1.0):
             best = HeldSolution(unknowns, iterations, round_, excess)
         if round_ - max(improved, closing_from if closing else 0) >= schedule.patience:
@@ -112,7 +115,7 @@ def hold_tolerances(
             closing_from = round_
         last = cost
         for term, v in zip(held, vectors, strict=True):
-            term.hold.adapt(v, only_grow=closing)
+            term.hold.adapt(v, only_grow=closing, aim=schedule.aim)
     if best is None:
         best = HeldSolution(start, 0, 0, _excess(held, [term.vectors_at(start) for term in held]))
     return replace(best, iterations=iterations)

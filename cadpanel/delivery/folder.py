@@ -8,16 +8,25 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from cadpanel.delivery.names import COMPARISON, PANELS, REPORT, SKINS
 from cadpanel.errors import CadpanelError, DeliveryError
 
-MARKS_OF_A_DELIVERY = ("report.json", "compare.json")
-"""A folder that holds one of these was written by cadpanel, and may be overwritten when asked."""
+MARKS_OF_A_DELIVERY = (REPORT, COMPARISON)
+"""A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
+OWN_FILES = frozenset({REPORT, COMPARISON, PANELS, SKINS})
+"""All that cadpanel writes; whatever else stands in a delivery is someone's work and is never deleted."""
+LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
+"""What file managers leave in a folder that people look into; it goes with the delivery."""
+
+_OWN_SCHEMA = re.compile(rb'"schema"\s*:\s*"cadpanel\.')
+_MARK_BYTES = 4096
 
 _DISK_FAULTS = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EFBIG})
 
@@ -28,7 +37,8 @@ def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
 
     Args:
         target: where the delivery shall stand; missing parents are made (and removed again on failure).
-        overwrite: replace an existing delivery. A folder that is not one is never replaced unless it is empty.
+        overwrite: replace an existing delivery. A folder that is not one, or that holds anything beside it, is never
+            replaced unless it is empty.
 
     Yields:
         The folder to write into; it is not the target, so do not keep its path.
@@ -65,11 +75,16 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
             raise DeliveryError(f"'{target}' is a file: name a folder to write the delivery to.")
         if not overwrite:
             raise DeliveryError(f"'{target}' exists already: name another folder, or replace it with --overwrite.")
-        is_ours = any((place / mark).is_file() for mark in MARKS_OF_A_DELIVERY)
-        if not is_ours and any(place.iterdir()):
+        names = {entry.name for entry in place.iterdir()} - LITTER
+        if names and not any(_is_mark(place / mark) for mark in MARKS_OF_A_DELIVERY):
             raise DeliveryError(
-                f"'{target}' holds files but no {' or '.join(MARKS_OF_A_DELIVERY)}, so it is not a delivery of "
-                "cadpanel and is not overwritten: name another folder."
+                f"'{target}' holds files but no {' or '.join(MARKS_OF_A_DELIVERY)} of cadpanel, so it is not a "
+                "delivery and is not overwritten: name another folder."
+            )
+        if names - OWN_FILES:
+            raise DeliveryError(
+                f"'{target}' also holds '{min(names - OWN_FILES)}', which cadpanel did not write and --overwrite would "
+                "delete: move it elsewhere, or name another folder."
             )
     except DeliveryError:
         raise
@@ -77,6 +92,14 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
         return  # nothing there; whether it can be made is for _make_parents to say
     except OSError as error:
         raise DeliveryError(_sentence(target, error)) from error
+
+
+def _is_mark(path: Path) -> bool:
+    """Whether a file begins as our report or comparison does; other programs have files of these names too."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return _OWN_SCHEMA.search(file.read(_MARK_BYTES)) is not None
 
 
 def _make_parents(place: Path, target: Path) -> list[Path]:

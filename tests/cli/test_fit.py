@@ -190,10 +190,22 @@ def test_an_existing_folder_is_refused_before_the_reference_is_read(run: Run, tm
 
 
 def test_overwrite_replaces_a_delivery(run: Run, lip_step: Path, delivery: Path) -> None:
-    (delivery / "left over.txt").write_text("old")
+    (delivery / "panels.step").write_text("old")
     answer = run("fit", lip_step, "--out", delivery, "--overwrite", "--quiet")
     assert answer.code == 0, answer.err
-    assert not (delivery / "left over.txt").exists()
+    assert (delivery / "panels.step").read_text(encoding="ascii") != "old"
+
+
+def test_overwrite_does_not_delete_the_reference_that_lies_in_the_delivery(
+    run: Run, lip_step: Path, delivery: Path
+) -> None:
+    reference = delivery / "lip.step"
+    reference.write_bytes(lip_step.read_bytes())
+    answer = run("fit", reference, "--out", delivery, "--overwrite")
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert "'lip.step'" in answer.err
+    assert reference.read_bytes() == lip_step.read_bytes()
 
 
 def saddle(u: Array, v: Array) -> Array:

@@ -14,19 +14,20 @@ from cadpanel.delivery.folder import MARKS_OF_A_DELIVERY, delivery_folder
 from cadpanel.delivery.jsonfile import Record, write_json
 from cadpanel.errors import DeliveryError, PanelError
 
+MARK = '{\n  "schema": "cadpanel.report/1"\n}\n'
+
 
 def deliver(target: Path, content: str = "new", *, overwrite: bool = False) -> None:
     with delivery_folder(target, overwrite=overwrite) as folder:
-        (folder / "report.json").write_text(content)
-        (folder / "parts").mkdir()
-        (folder / "parts" / "panel.step").write_text(content)
+        (folder / "report.json").write_text(MARK)
+        (folder / "panels.step").write_text(content)
 
 
 def everything_below(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-WHOLE = ["report.json", "parts", "parts/panel.step"]
+WHOLE = ["panels.step", "report.json"]
 
 
 def test_a_finished_folder_stands_in_its_place_and_alone(tmp_path: Path) -> None:
@@ -42,7 +43,7 @@ def test_the_folder_has_the_permissions_of_any_other_folder(tmp_path: Path) -> N
 
 def test_missing_parents_are_made(tmp_path: Path) -> None:
     deliver(tmp_path / "a" / "b" / "out")
-    assert (tmp_path / "a" / "b" / "out" / "report.json").read_text() == "new"
+    assert (tmp_path / "a" / "b" / "out" / "panels.step").read_text() == "new"
 
 
 def test_a_target_relative_to_the_working_directory_is_fine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,7 +57,7 @@ def test_a_link_to_a_folder_keeps_pointing_at_it(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "real")
     deliver(tmp_path / "link", overwrite=True)
     assert (tmp_path / "link").is_symlink()
-    assert (tmp_path / "real" / "report.json").read_text() == "new"
+    assert (tmp_path / "real" / "panels.step").read_text() == "new"
 
 
 # ------------------------------------------------------------------------------------------------- an existing target
@@ -77,8 +78,9 @@ def test_an_existing_folder_is_refused_before_any_work_is_done(tmp_path: Path, *
 def test_overwrite_replaces_a_delivery_whole(tmp_path: Path, mark: str) -> None:
     target = tmp_path / "out"
     target.mkdir()
-    (target / mark).write_text("old")
-    (target / "left_over.txt").write_text("old")
+    (target / mark).write_text(MARK)
+    (target / "skins.step").write_text("old")
+    (target / ".DS_Store").write_text("litter")
     deliver(target, overwrite=True)
     assert everything_below(target) == sorted(WHOLE)
     assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
@@ -99,6 +101,40 @@ def test_overwrite_never_replaces_a_folder_that_is_not_a_delivery(tmp_path: Path
     assert everything_below(tmp_path) == ["photographs", "photographs/family.jpg"]
 
 
+def test_overwrite_never_deletes_a_file_that_cadpanel_did_not_write(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+    deliver(target, "old")
+    (target / "details.FCStd").write_text("a day's work")
+    with pytest.raises(DeliveryError, match=r"also holds 'details\.FCStd'"):
+        deliver(target, overwrite=True)
+    assert everything_below(target) == ["details.FCStd", *WHOLE]
+    assert (target / "panels.step").read_text() == "old"
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"schema": "survey/2"}', "\xff\xfe"])
+def test_a_report_of_another_program_does_not_make_a_folder_ours(tmp_path: Path, content: str) -> None:
+    target = tmp_path / "survey"
+    target.mkdir()
+    (target / "report.json").write_text(content)
+    with pytest.raises(DeliveryError, match="is not a delivery"):
+        deliver(target, overwrite=True)
+    assert (target / "report.json").read_text() == content
+
+
+def test_a_file_that_comes_into_being_during_the_work_is_not_deleted_either(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+    deliver(target, "old")
+
+    def save_something_meanwhile() -> None:
+        with delivery_folder(target, overwrite=True) as folder:
+            (folder / "report.json").write_text(MARK)
+            (target / "notes.txt").write_text("mine")
+
+    with pytest.raises(DeliveryError, match=r"also holds 'notes\.txt'"):
+        save_something_meanwhile()
+    assert everything_below(tmp_path) == ["out", "out/notes.txt", *(f"out/{name}" for name in WHOLE)]
+
+
 def test_a_folder_that_came_into_being_during_the_work_is_not_replaced(tmp_path: Path) -> None:
     target = tmp_path / "out"
 
@@ -109,7 +145,7 @@ def test_a_folder_that_came_into_being_during_the_work_is_not_replaced(tmp_path:
 
     with pytest.raises(DeliveryError, match="exists already"):
         lose_the_race()
-    assert (target / "report.json").read_text() == "first"
+    assert (target / "panels.step").read_text() == "first"
     assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
 
 
@@ -150,7 +186,7 @@ def test_whatever_stops_the_work_leaves_nothing_and_keeps_the_old(
     assert raised.value is error
     assert everything_below(tmp_path) == before
     if overwrite:
-        assert (target / "report.json").read_text() == "old"
+        assert (target / "panels.step").read_text() == "old"
 
 
 def test_a_disk_that_is_full_is_one_sentence_about_the_target(tmp_path: Path) -> None:
@@ -246,7 +282,7 @@ def test_the_old_delivery_returns_when_the_new_one_cannot_take_its_place(
     monkeypatch.setattr(Path, "rename", fail_for_the_new_one)
     with pytest.raises((DeliveryError, KeyboardInterrupt)):
         deliver(target, overwrite=True)
-    assert (target / "report.json").read_text() == "old"
+    assert (target / "panels.step").read_text() == "old"
     assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
 
 
@@ -263,4 +299,4 @@ def test_an_old_delivery_that_cannot_be_deleted_is_told_and_the_new_one_stands(
     monkeypatch.setattr(shutil, "rmtree", fail)
     with pytest.raises(DeliveryError, match="is written, but what stood there before could not be deleted"):
         deliver(target, overwrite=True)
-    assert (target / "report.json").read_text() == "new"
+    assert (target / "panels.step").read_text() == "new"

@@ -14,6 +14,8 @@ import numpy as np
 from cadpanel.geometry.frames import dot
 from cadpanel.geometry.shape import Array
 
+PEAKS = 4
+"""Samples on each piece around which the farthest point is looked for."""
 SAMPLES = 33
 """Samples on each piece before refinement."""
 ROUNDS = 4
@@ -107,18 +109,20 @@ def _farthest(chain: CurvePieces, other: CurvePieces) -> Array:
     parameters = chain.starts[..., None] + spans[..., None] * fractions
     points = _points(chain, parameters).reshape(pairs, -1, 3)
     distances = _to_chain(points, other).reshape(pairs, count, SAMPLES)
-    best = distances.argmax(axis=-1)
-    peak = np.take_along_axis(parameters, best[..., None], axis=-1)
-    greatest = distances.max(axis=-1)
+    # The farthest point may hide between two samples while a third is the farthest of all: look around several.
+    best = np.argsort(-distances, axis=-1, kind="stable")[..., :PEAKS]
+    peak = np.take_along_axis(parameters, best, axis=-1)
+    greatest = distances.max(axis=(1, 2))
     step = spans / (SAMPLES - 1)
     for _ in range(ROUNDS):
-        grid = peak + step[..., None] * np.linspace(-1.0, 1.0, 9)
-        grid = np.clip(grid, chain.starts[..., None], chain.stops[..., None])
-        near = _to_chain(_points(chain, grid).reshape(pairs, -1, 3), other).reshape(pairs, count, 9)
-        peak = np.take_along_axis(grid, near.argmax(axis=-1)[..., None], axis=-1)
-        greatest = np.maximum(greatest, near.max(axis=-1))
+        grid = peak[..., None] + step[..., None, None] * np.linspace(-1.0, 1.0, 9)
+        grid = np.clip(grid, chain.starts[..., None, None], chain.stops[..., None, None])
+        on_chain = _points(chain, grid.reshape(pairs, count, -1)).reshape(pairs, -1, 3)
+        near = _to_chain(on_chain, other).reshape(grid.shape)
+        peak = np.take_along_axis(grid, near.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+        greatest = np.maximum(greatest, near.max(axis=(1, 2, 3)))
         step = step / 4.0
-    return np.asarray(greatest.max(axis=-1))
+    return np.asarray(greatest)
 
 
 def hausdorff_distances(firsts: Sequence[CurvePieces], seconds: Sequence[CurvePieces]) -> Array:

@@ -20,6 +20,7 @@ _ARC_POINTS = 24
 _NEWTON_STEPS = 6
 _DERIVATIVE_STEP = 1e-5
 # The widest place is looked for again between the points, on ever finer grids around the widest of them on each patch.
+_PEAKS = 4
 _REFINEMENTS = 3
 _GRID = np.linspace(-1.0, 1.0, 9)
 
@@ -123,14 +124,22 @@ def _widest(one: EndCurves, other: EndCurves, stations: Array, distance: Array) 
     """(s,) the largest distance of `one` from `other`, found from the distances (s, q) at the stations (q,)."""
     widest: Array = distance.max(axis=1)
     patch = np.minimum(stations.astype(np.intp), one.patches - 1)
-    lows = np.arange(one.patches, dtype=float)[None, :, None]
-    peak = np.stack([stations[patch == i][distance[:, patch == i].argmax(axis=1)] for i in range(one.patches)], axis=1)
+    # The widest place may hide between two stations while a third is the widest of all: look around several.
+    peaks = [_largest(distance[:, patch == i], stations[patch == i]) for i in range(one.patches)]
+    peak = np.stack(peaks, axis=1)
+    lows = np.arange(one.patches, dtype=float)[None, :, None, None]
     step = np.array([np.diff(stations, append=one.patches)[patch == i].max() for i in range(one.patches)])
     for _ in range(_REFINEMENTS):
-        grid = np.clip(peak[..., None] + step[:, None] * _GRID, lows, lows + 1.0)
+        grid = np.clip(peak[..., None] + step[:, None, None] * _GRID, lows, lows + 1.0)
         near, _ = closest(other, one.follow(grid.reshape(len(grid), -1))[0])
         near = near.reshape(grid.shape)
         peak = np.take_along_axis(grid, near.argmax(axis=-1)[..., None], axis=-1)[..., 0]
-        widest = np.maximum(widest, near.max(axis=(1, 2)))
+        widest = np.maximum(widest, near.max(axis=(1, 2, 3)))
         step = step / 4.0
     return widest
+
+
+def _largest(distance: Array, stations: Array) -> Array:
+    """(s, _PEAKS) the stations (q,) with the largest distances (s, q)."""
+    order = np.argsort(-distance, axis=1, kind="stable")[:, :_PEAKS]
+    return stations[np.resize(order.T, (_PEAKS, len(order))).T]

@@ -324,8 +324,40 @@ def test_reference_to_a_missing_instance_is_refused(tmp_path, strip_file):
 
 def test_face_that_the_kernel_cannot_build_is_refused(tmp_path, strip_file):
     path = tmp_path / "face.step"
-    path.write_text(re.sub(r"(ADVANCED_FACE\('',\(#\d+\),)#\d+", r"\1#1", strip_file.read_text(), count=1))
+    path.write_text(re.sub(r"(B_SPLINE_SURFACE_WITH_KNOTS\('',)\d+", r"\g<1>300", strip_file.read_text(), count=1))
     assert "a shape that the CAD kernel cannot read" in refusal(path)
+
+
+@pytest.mark.parametrize(
+    ("whole", "damaged"),
+    [
+        (r"(LINE\('',#\d+),#\d+\)", r"\1,$)"),
+        (r"(LINE\('',)#\d+,(#\d+)\)", r"\1\2,\2)"),
+        (r"LINE\('',#\d+,", r"LINE('',"),
+        (r"= LINE\(", r"= LANE("),
+        (r"(CARTESIAN_POINT\('',\()[^,]*,", r"\1'a',"),
+        (r"(ADVANCED_FACE\('',\(#\d+\),)#\d+", r"\1#1"),
+        (r"(EDGE_LOOP\('',)\([^)]*\)", r"\1($)"),
+        (r"(ORIENTED_EDGE\('',\*,\*,)#\d+", r"\1$"),
+        (r"PCURVE\('',#\d+", r"PCURVE('',$"),
+        (r"(DEFINITIONAL_REPRESENTATION\('',\()#\d+", r"\1#1"),
+    ],
+)
+def test_geometry_with_a_parameter_of_a_wrong_kind_is_refused(tmp_path, strip_file, whole, damaged):
+    """The kernel crashes over some of them, and makes up numbers for the others."""
+    text, count = re.subn(whole, damaged, strip_file.read_text(), count=1)
+    assert count == 1
+    path = tmp_path / "bent.step"
+    path.write_text(text)
+    assert "'bent.step' is damaged" in refusal(path)
+
+
+def test_missing_names_do_no_harm(tmp_path, strip_file):
+    path = tmp_path / "nameless.step"
+    path.write_text(
+        strip_file.read_text().replace("LINE('',", "LINE($,").replace("ADVANCED_FACE('',", "ADVANCED_FACE($,")
+    )
+    assert len(read_reference(path).panels) == len(read_reference(strip_file).panels)
 
 
 def test_file_of_curves_is_refused(folder):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
 from typing import Annotated, NoReturn
@@ -55,11 +56,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns:
         The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
-        sentence on stderr; 130 interrupted.
+        sentence on stderr; 130 interrupted; 143 killed.
     """
-    signal.signal(signal.SIGTERM, _stop)
+    for gone in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored
+            signal.signal(gone, _stop)
     try:
-        status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)
+        with warnings.catch_warnings():
+            # NumPy's remarks on single operations are not for users; what comes of them is checked, and told.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)
     except typer.TyperException as error:
         message = error.format_message().replace("Value error, ", "").rstrip(".")
         return _refuse(f"{message} (see 'cadpanel --help').")
@@ -71,7 +77,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         status = EXIT_INTERRUPTED
     except ImportError as error:
-        # While the kernel's binding loads, an interrupt comes out as the failure of its import.
+        # While the kernel's binding loads, an interrupt or a kill comes out as the failure of its import.
+        if isinstance(error.__cause__, SystemExit):
+            return EXIT_TERMINATED
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
         status = EXIT_INTERRUPTED
@@ -88,7 +96,7 @@ def _refuse(sentence: str) -> int:
 
 
 def _stop(_signal: int, _frame: object) -> NoReturn:
-    """A polite kill cleans up as an interrupt does."""
+    """A polite kill, or a terminal that is closed, cleans up as an interrupt does."""
     raise SystemExit(EXIT_TERMINATED)
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.geometry.buildable import SkinSide
+from cadpanel.fitting.settings import require
+from cadpanel.geometry.buildable import THICKEST_SHEET, THINNEST_SHEET, SkinSide
 
 Schema = Literal["AP242", "AP214"]
 
@@ -32,8 +32,7 @@ class SheetSettings:
         Raises:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
-        if not (math.isfinite(self.thickness) and self.thickness > 0.0):
-            raise SettingsError(f"the sheet thickness must be above 0 mm, not {self.thickness:g} mm")
+        require("sheet thickness", self.thickness, least=THINNEST_SHEET, most=THICKEST_SHEET, unit=" mm")
         _require_one_of("skin side", self.skin_side, get_args(SkinSide))
         _require_one_of("STEP schema", self.schema, get_args(Schema))
 

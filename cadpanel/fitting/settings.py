@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from numbers import Integral, Real
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import feature
 from cadpanel.features.feature import Feature, Tilt
+
+SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
+"""Weights farther apart would lose each other in the digits of a double."""
 
 Method = Literal["local", "two_stage", "concurrent"]
 
@@ -34,9 +38,11 @@ class Weights:
             SettingsError: a weight is not a number of 0 or more, or no deviation or drift is left to fit.
         """
         for name in ("gap", "deviation", "drift"):
-            require(name + " weight", getattr(self, name), least=0.0)
+            require(name + " weight", getattr(self, name), least=0.0, most=LARGEST_WEIGHT)
         if self.deviation == 0.0 or self.drift == 0.0:
             raise SettingsError("the weights of deviation and drift must be above 0, or panels may wander off")
+        for name in ("deviation", "drift"):
+            require(name + " weight", getattr(self, name), least=SMALLEST_WEIGHT, most=LARGEST_WEIGHT)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,18 +84,38 @@ class FitSettings:
         require("gap tolerance", self.gap_tolerance, least=1e-3, unit=" mm")
         require("drift along the strip", self.drift_along, least=1e-4, most=0.5)
         require("drift across the free edges", self.drift_across, least=1e-4, most=0.5)
-        require("number of restarts", self.restarts, least=0, most=1000)
-        require("seed", self.seed, least=0)
+        require_whole("number of restarts", self.restarts, least=0, most=1000)
+        require_whole("seed", self.seed, least=0)
+        _require_weights(self.weights)
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
 
 
-def require(what: str, value: float, *, least: float, most: float = math.inf, unit: str = "") -> None:
+def require_whole(what: str, value: object, *, least: int, most: float = math.inf) -> None:
+    """Refuse a number outside [least, most], or one that is no whole number.
+
+    Raises:
+        SettingsError: with one sentence that names the setting and its range.
+    """
+    if not isinstance(value, Integral):
+        raise SettingsError(f"the {what} must be a whole number, not {value!r}")
+    require(what, value, least=least, most=most)
+
+
+def require(what: str, value: object, *, least: float, most: float = math.inf, unit: str = "") -> None:
     """Refuse a number outside [least, most], or none at all.
 
     Raises:
         SettingsError: with one sentence that names the setting and its range.
     """
-    if not math.isfinite(value) or not least <= value <= most:
+    if not isinstance(value, Real):
+        raise SettingsError(f"the {what} must be a number, not {value!r}")
+    number = float(value)
+    if not math.isfinite(number) or not least <= number <= most:
         span = f"at least {least:g}{unit}" if math.isinf(most) else f"between {least:g}{unit} and {most:g}{unit}"
-        raise SettingsError(f"the {what} must be {span}, not {value:g}{unit}")
+        raise SettingsError(f"the {what} must be {span}, not {number:g}{unit}")
+
+
+def _require_weights(value: object) -> None:
+    if not isinstance(value, Weights | None):
+        raise SettingsError(f"the weights must be Weights or None, not {value!r}")

@@ -20,6 +20,8 @@ SkinSide = Literal["outer", "inner"]
 
 SMALLEST_RADIUS = 0.1
 """Distance from the axis, mm, below which a skin counts as having reached the apex."""
+THINNEST_SHEET, THICKEST_SHEET = 0.01, 10_000.0
+"""mm; of a thinner sheet the volume cannot be proved to nine digits, and in the end its two faces become one."""
 SMALLEST_LENGTH = 0.1
 """Shortest edge, mm: along a generatrix, across a flange, along an arc."""
 LARGEST_COORDINATE = 1e7
@@ -58,8 +60,11 @@ def check_buildable(shape: PanelShape, thickness: float, skin_side: SkinSide = "
         PanelError: for the reasons of `check_skin`, on either face of the sheet, or a sheet that is thicker than its
             inner radius allows.
     """
-    if not (math.isfinite(thickness) and thickness > 0.0):
-        raise PanelError(shape.name, f"the sheet thickness is {thickness} mm; give a positive number.")
+    if not THINNEST_SHEET <= thickness <= THICKEST_SHEET:
+        raise PanelError(
+            shape.name,
+            f"the sheet thickness is {thickness} mm; give a number from {THINNEST_SHEET:g} to {THICKEST_SHEET:g}.",
+        )
     check_skin(shape)
     away = other_face(shape, thickness, skin_side)
     _check_thickness(shape, away, thickness)

@@ -149,6 +149,8 @@ def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
         ("--thickness nan", "sheet thickness"),
         ("--thickness 0", "sheet thickness"),
         ("--thickness -3", "sheet thickness"),
+        ("--thickness 1e-9", "between 0.01 mm and 10000 mm"),
+        ("--thickness 1e308", "sheet thickness"),
         ("--drift-along nan", "--drift-along"),
         ("--drift-across -1", "--drift-across"),
         ("--drift-along 80", "between 0.01 and 50 percent"),
@@ -168,6 +170,7 @@ def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
         ("--weights gap=x", "a number for gap"),
         ("--weights gap=nan", "gap weight"),
         ("--weights drift=0", "must be above 0"),
+        ("--weights gap=1e300", "gap weight"),
         ("--weights speed=1", "speed=1"),
     ],
 )
@@ -267,7 +270,14 @@ def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path
 
 
 @pytest.mark.parametrize("after", [0.5, 6.0], ids=["while the kernel loads", "while it fits"])
-def test_an_interrupt_leaves_nothing(lip_step: Path, tmp_path: Path, after: float) -> None:
+@pytest.mark.parametrize(
+    ("sent", "code", "said"),
+    [(signal.SIGINT, 130, ["Interrupted."]), (signal.SIGTERM, 143, []), (signal.SIGHUP, 143, [])],
+    ids=["interrupt", "kill", "closed terminal"],
+)
+def test_whoever_stops_it_finds_nothing_left(
+    lip_step: Path, tmp_path: Path, after: float, sent: signal.Signals, code: int, said: list[str]
+) -> None:
     with subprocess.Popen(
         [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--restarts", "1000"],
         stderr=subprocess.PIPE,
@@ -278,10 +288,10 @@ def test_an_interrupt_leaves_nothing(lip_step: Path, tmp_path: Path, after: floa
         while not list(tmp_path.glob(".cadpanel-*")) and time.monotonic() < give_up:
             time.sleep(0.05)
         time.sleep(after)
-        os.kill(process.pid, signal.SIGINT)
+        os.kill(process.pid, sent)
         _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert err.splitlines()[-1] == "Interrupted."
+    assert process.returncode == code
+    assert err.splitlines()[-1:] == said
     assert list(tmp_path.iterdir()) == []
 
 

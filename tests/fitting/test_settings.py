@@ -19,6 +19,36 @@ def test_numbers_that_are_none_infinite_or_negative_are_refused(name, value):
         FitSettings(**how)
 
 
+@pytest.mark.parametrize("name", NUMBERS)
+@pytest.mark.parametrize("value", ["1", None, [1.0], 1j])
+def test_what_is_no_number_is_refused_by_the_settings_name(name, value):
+    how: dict[str, Any] = {name: value}
+    with pytest.raises(SettingsError, match=r"must be a (whole )?number, not"):
+        FitSettings(**how)
+
+
+@pytest.mark.parametrize("name", ["restarts", "seed"])
+def test_half_a_restart_or_seed_is_refused(name):
+    how: dict[str, Any] = {name: 1.5}
+    with pytest.raises(SettingsError, match=r"must be a whole number, not 1\.5"):
+        FitSettings(**how)
+
+
+def test_weights_that_are_no_weights_are_refused():
+    how: dict[str, Any] = {"weights": (1.0, 1.0, 1.0)}
+    with pytest.raises(SettingsError, match="must be Weights or None"):
+        FitSettings(**how)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("gap", 1e300), ("deviation", 1e-300), ("drift", 1e-300), ("drift", "1"), ("gap", None)]
+)
+def test_weights_that_no_double_can_hold_together_are_refused(name, value):
+    how: dict[str, Any] = {name: value}
+    with pytest.raises(SettingsError, match=f"{name} weight must be"):
+        Weights(**how)
+
+
 @pytest.mark.parametrize(
     ("name", "least", "most"),
     [

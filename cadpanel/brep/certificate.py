@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -44,12 +44,14 @@ class ExpectedPanel:
         volume: analytic volume of the sheet, mm3.
         kinds: kinds of its patches in the order of the walk, as built.
         corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, mm.
+        far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
     """
 
     name: str
     volume: float
     kinds: tuple[PatchKind, ...]
     corners: Array
+    far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,7 +188,21 @@ def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -
         f"has a volume of {facts.volume:.12g} mm3, expected {panel.volume:.12g}": not error <= VOLUME_LIMIT,
     }
     failures += [f"Panel '{panel.name}': its solid {problem}." for problem, present in problems.items() if present]
+    if facts.solids == 1:
+        _check_far_face(panel, facts, failures)
     return error
+
+
+def _check_far_face(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> None:
+    """Four corners of the solid must lie where the thickness and the skin's side put the far face of each flange."""
+    for index, (point, normal) in enumerate(panel.far_planes, start=1):
+        off = np.sort(np.abs((facts.vertices - point) @ normal))
+        if not (len(off) >= 4 and off[3] <= POSITION_LIMIT):
+            failures.append(
+                f"Panel '{panel.name}': the far face of its solid does not lie where the thickness and the skin's side "
+                f"put it (flat patch {index})."
+            )
+            return
 
 
 def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
@@ -194,8 +210,7 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
     found, wanted = Counter(facts.face_kinds), Counter[str](panel.kinds)
     shared, alone = len(facts.straight_edges), (facts.shells, facts.solids) == (1, 0)
     corners = panel.corners.reshape(-1, 3)
-    apart = np.linalg.norm(facts.vertices[:, None] - corners[None], axis=-1)
-    error = float(max(apart.min(axis=0).max(), apart.min(axis=1).max()))
+    error = max(_farthest(corners, facts.vertices), _farthest(facts.vertices, corners))
     problems = {
         f"holds {facts.shells} shells and {facts.solids} solids instead of one shell": not alone,
         "does not pass the kernel's exact check": not facts.valid,
@@ -214,9 +229,15 @@ def _described(kinds: dict[str, int]) -> str:
 
 def _check_same_place(name: str, solid: ShapeFacts, skin: ShapeFacts, failures: list[str]) -> None:
     """The skin's corners must be corners of the solid."""
-    apart = np.linalg.norm(skin.vertices[:, None] - solid.vertices[None], axis=-1).min(axis=1).max()
+    apart = _farthest(skin.vertices, solid.vertices)
     if not apart <= POSITION_LIMIT:
         failures.append(f"Panel '{name}': its solid lies {apart:.3g} mm away from its skin.")
+
+
+def _farthest(points: Array, others: Array) -> float:
+    """Distance in mm of the point that is farthest from its nearest other; infinite if there is none to be near."""
+    apart = np.linalg.norm(points[:, None] - others[None], axis=-1).min(axis=1, initial=np.inf)
+    return float(apart.max(initial=0.0))
 
 
 def _seam_gaps(

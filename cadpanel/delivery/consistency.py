@@ -16,6 +16,8 @@ from cadpanel.geometry.shape import Array
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
+SAME_ANGLE = 1e-6
+"""Degrees by which a patch's sweep may differ from what its corners, to the last digit of a double, enclose."""
 ON_PATCH = 1e-5
 """Distance in mm of a corner from the patches that meet there."""
 
@@ -29,6 +31,11 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     """
     panels = {panel.name: panel for panel in report.panels}
     failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
+    failures += [
+        f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
+        for panel in report.panels
+        if panel.feature != report.settings.feature
+    ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
     failures += _summary_faults(report)
     failures += _certificate_faults(report.certificate, certificate)
@@ -37,9 +44,6 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
 
 def _patch_faults(panel: PanelModel) -> Iterator[str]:
     corners = np.array(panel.corners)
-    if corners.shape[1] != len(panel.patches) + 1:
-        yield f"Panel '{panel.name}': the report has {corners.shape[1]} corners at an end for its patches."
-        return
     for index, patch in enumerate(panel.patches):
         off = float(np.abs(_distance(patch, corners[:, index : index + 2].reshape(-1, 3))).max())
         if not off <= ON_PATCH:
@@ -47,6 +51,21 @@ def _patch_faults(panel: PanelModel) -> Iterator[str]:
                 f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) passes its corners "
                 f"at {off:.3g} mm."
             )
+        elif isinstance(patch, ConePatchModel | CylinderPatchModel):
+            turned = _sweep(patch, corners[0, index : index + 2])
+            if not abs(turned - patch.sweep) <= SAME_ANGLE:
+                yield (
+                    f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) sweeps {patch.sweep:.6g} "
+                    f"degrees, its corners lie {turned:.6g} apart."
+                )
+
+
+def _sweep(patch: ConePatchModel | CylinderPatchModel, corners: Array) -> float:
+    """Angle in degrees by which the axis has to be turned about, right-handed, from the first corner to the second."""
+    axis = np.array(patch.axis)
+    offset = corners - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
+    first, second = offset - (offset @ axis)[:, None] * axis
+    return float(np.degrees(np.arctan2(np.cross(first, second) @ axis, first @ second)))
 
 
 def _distance(patch: PatchModel, points: Array) -> Array:
@@ -91,6 +110,7 @@ def _summary_faults(report: ReportModel) -> Iterator[str]:
         if not abs(stated - value) <= SAME_LENGTH:
             yield f"The summary's {key} is {stated:.6g}, the worst in the list is {value:.6g}."
     yield from _tolerance_faults(report, summary)
+    yield from _deviation_faults(report, summary)
 
 
 _OF_SEAMS: dict[str, Callable[[SeamModel], float]] = {
@@ -114,6 +134,33 @@ def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
     widest = max(summary.max_corner_gap, summary.max_seam_gap)
     if summary.tolerance_met and widest > tolerance:
         yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
+    limits = (
+        ("along", summary.drift_along_percent, 100.0 * report.settings.drift_along),
+        ("across", summary.drift_across_percent, 100.0 * report.settings.drift_across),
+    )
+    beyond = [limit for limit in limits if limit[1] > limit[2] + SAME_LENGTH]
+    if summary.tolerance_met and beyond:
+        way, drift, limit = beyond[0]
+        yield f"The report calls its limits met, and a drift {way} in it is {drift:.6g} %, {limit:.6g} % are allowed."
+    if not summary.tolerance_met and not beyond and widest < tolerance - SAME_LENGTH and _well_within(limits):
+        yield "The report calls its tolerance not met, and all its gaps and drifts are within their limits."
+
+
+def _well_within(limits: tuple[tuple[str, float, float], ...]) -> bool:
+    return all(drift < limit - SAME_LENGTH for _, drift, limit in limits)
+
+
+def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
+    """The deviation of all panels is a mean of theirs, and is stated as a multiple of the local fit's."""
+    each = [panel.rms_deviation for panel in report.panels]
+    if not min(each) - SAME_LENGTH <= summary.rms_deviation <= max(each) + SAME_LENGTH:
+        yield (
+            f"The summary's rms_deviation is {summary.rms_deviation:.6g}, those in the list go from {min(each):.6g} to "
+            f"{max(each):.6g}."
+        )
+    multiple, local = summary.local_rms_multiple, report.baselines.local.rms_deviation
+    if multiple is not None and not abs(multiple * local - summary.rms_deviation) <= SAME_LENGTH:
+        yield f"The summary's local_rms_multiple is {multiple:.6g}, the deviations do not make it so."
 
 
 def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:

@@ -76,7 +76,7 @@ def fill_delivery(
     _write(folder, built, Path(result.reference.source).stem, sheet, tell)
     written_at = time.perf_counter()
     tell("verify", 0, 1)
-    certificate = prove(folder, panels, seams)
+    certificate = prove(folder, panels, seams, sheet.thickness, sheet.skin_side)
     verified_at = time.perf_counter()
     _demand(certificate)
     report = ReportModel(

@@ -9,15 +9,28 @@ import numpy as np
 
 from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
 from cadpanel.delivery.names import PANELS, SKINS
+from cadpanel.delivery.patch_records import PlanePatchModel
 from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel
+from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.shape import Array
 
 
-def prove(folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel]) -> CertificateModel:
+def prove(
+    folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel], thickness: float, skin_side: SkinSide
+) -> CertificateModel:
     """What reading panels.step and skins.step in a folder back shows.
+
+    Args:
+        folder: that holds the files.
+        panels: as the report states them.
+        seams: as the report states them.
+        thickness: of the sheet, mm.
+        skin_side: "outer" where the sheet lies behind the skin's normals.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
+    depth = -thickness if skin_side == "outer" else thickness
     moved = {panel.name: panel.moved for panel in panels}
     expected = [
         ExpectedPanel(
@@ -25,6 +38,7 @@ def prove(folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel]
             volume=panel.volume,
             kinds=tuple(patch.kind for patch in panel.patches),
             corners=np.array(panel.corners),
+            far_planes=_far_planes(panel, depth),
         )
         for panel in panels
     ]
@@ -33,6 +47,13 @@ def prove(folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel]
         for seam in seams
     ]
     return _record(certify(folder / PANELS, folder / SKINS, expected, gaps))
+
+
+def _far_planes(panel: PanelModel, depth: float) -> Array:
+    planes = [(patch.point, patch.normal) for patch in panel.patches if isinstance(patch, PlanePatchModel)]
+    found = np.array(planes).reshape(-1, 2, 3)
+    found[:, 0] += depth * found[:, 1]
+    return found
 
 
 def _record(certificate: Certificate) -> CertificateModel:

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 from cadpanel.delivery.jsonfile import NonNegative, Record, Vector, read_json, write_json
 from cadpanel.delivery.patch_records import PatchModel
 
+Positive = Annotated[float, Field(gt=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
 End = Literal[0, 1]
 
@@ -119,12 +120,19 @@ class PanelModel(Record):
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
-    area: NonNegative
-    volume: NonNegative
+    area: Positive
+    volume: Positive
     corners: tuple[tuple[Vector, ...], tuple[Vector, ...]]
     patches: tuple[PatchModel, ...]
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_that_corners_enclose_patches(self) -> PanelModel:
+        for end, corners in enumerate(self.corners):
+            if not len(corners) == len(self.patches) + 1 >= 2:
+                raise ValueError(f"{len(corners)} corners at end {end} do not fit {len(self.patches)} patches")
+        return self
 
 
 class SeamModel(Record):

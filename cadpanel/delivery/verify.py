@@ -45,6 +45,6 @@ def verify(folder: str | Path) -> Verification:
         if not (place / name).is_file():
             raise DeliveryError(f"'{folder}' holds no {name}, so it is no whole delivery: write it again.")
     report = read_report(place / REPORT)
-    certificate = prove(place, report.panels, report.seams)
+    certificate = prove(place, report.panels, report.seams, report.settings.thickness, report.settings.skin_side)
     failures = (*certificate.failures, *check_report(report, certificate))
     return Verification(report=report, certificate=certificate, failures=failures)

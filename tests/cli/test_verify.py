@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,20 @@ def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (put("seams", 0, "corner_gaps", 0, value=0.0), "Seam 'N-01' to 'N-02': the corner gaps"),
         (put("seams", 1, "max_corner_gap", value=0.5), "Seam 'N-02' to 'N-03': the largest corner gap"),
         (put("seams", 1, "max_seam_gap", value=0.01), "Seam 'N-02' to 'N-03': the gap is"),
+        (put("panels", 0, "volume", value=0.0), "panels.0.volume"),
+        (put("panels", 0, "corners", value=[[], []]), "0 corners at end 0 do not fit 3 patches"),
+        (put("panels", 0, "patches", value=[]), "4 corners at end 0 do not fit 0 patches"),
+        (put("panels", 2, "patches", 1, "sweep", value=lambda v: v * 0.9), "Panel 'N-03': the report's cone"),
+        (put("panels", 1, "patches", 0, "normal", value=lambda v: [-x for x in v]), "Panel 'N-02': the far face"),
+        (put("panels", 1, "feature", value="plane-cylinder-plane"), "Panel 'N-02': the report calls it"),
+        (put("settings", "thickness", value=2.99), "Panel 'N-01': the far face"),
+        (put("settings", "skin_side", value="inner"), "Panel 'N-01': the far face"),
+        (put("settings", "drift_along", value=1e-4), "a drift along in it is"),
+        (put("settings", "drift_across", value=1e-4), "a drift across in it is"),
+        (put("summary", "tolerance_met", value=False), "calls its tolerance not met"),
+        (put("summary", "rms_deviation", value=lambda v: v / 9.0), "rms_deviation"),
+        (put("summary", "local_rms_multiple", value=1.0), "local_rms_multiple"),
+        (put("baselines", "local", "rms_deviation", value=lambda v: v * 2.0), "local_rms_multiple"),
         (put("summary", "max_corner_gap", value=0.5), "max_corner_gap"),
         (put("summary", "max_deviation", value=0.5), "max_deviation"),
         (put("summary", "hausdorff", value=0.5), "hausdorff"),
@@ -85,6 +100,18 @@ def test_skins_in_the_place_of_panels_are_found_out(run: Run, delivery: Path) ->
     answer = run("verify", delivery)
     assert answer.code == 1
     assert "Panel 'N-01': its solid holds 0 solids" in answer.err
+
+
+@pytest.mark.parametrize("name", ["panels.step", "skins.step"])
+def test_a_panel_without_a_shape_is_found_out(run: Run, delivery: Path, name: str) -> None:
+    path = delivery / name
+    kind = "MANIFOLD_SOLID_BREP" if name == "panels.step" else "SHELL_BASED_SURFACE_MODEL"
+    text, count = re.subn(rf"#\d+={kind}[^;]*;\n", "", path.read_text(encoding="ascii"), count=1)
+    assert count == 1
+    path.write_text(text, encoding="ascii")
+    answer = run("verify", delivery)
+    assert answer.code == 1
+    assert "Panel 'N-01'" in answer.err
 
 
 @pytest.mark.parametrize("name", ["report.json", "panels.step", "skins.step"])

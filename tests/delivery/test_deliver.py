@@ -102,6 +102,7 @@ def test_a_delivery_with_slender_cones_holds_its_proof(tmp_path: Path) -> None:
         corner_gaps=np.zeros((0, 4)),
         seam_gap=np.zeros(0),
         kink=np.zeros(0),
+        overall_rms=float(result.measures.rms_deviation[0]),
         **{name: getattr(result.measures, name)[:1] for name in OF_PANELS},
     )
     one = replace(result, reference=lone, shapes=(slender(result.shapes[0]),), measures=measures)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from cadpanel.reference.seams import align, find_seams, refuse_duplicates
 
 # Ends of panels that meet may lie this far apart in the file, mm.
 SEAM_TOLERANCE = 1.0
+# The largest tolerance, against the distance of any two neighbouring corners of a panel.
+LARGEST_TOLERANCE = 0.4
 
 
 def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float = SEAM_TOLERANCE) -> Reference:
@@ -32,15 +35,33 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
         PanelError: one of the panels is none, lies on another one, or meets more than one at the same end.
         SettingsError: the tolerance is no positive length.
     """
-    if not (np.isfinite(seam_tolerance) and seam_tolerance > 0.0):
-        raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance}.")
+    if not _is_length(seam_tolerance):
+        raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance!r}.")
     if not raw_panels:
         raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
     panels = [_panel(raw, source) for raw in raw_panels]
+    _check_tolerance(panels, seam_tolerance)
     refuse_duplicates(panels, source, seam_tolerance)
     seams = find_seams(panels, source, seam_tolerance)
     aligned, seams = align(panels, seams, seam_tolerance)
     return Reference(source=source, panels=aligned, seams=seams, seam_tolerance=seam_tolerance)
+
+
+def _is_length(value: object) -> bool:
+    return isinstance(value, Real) and 0.0 < float(value) < np.inf
+
+
+def _check_tolerance(panels: Sequence[PanelReference], seam_tolerance: float) -> None:
+    """Refuse a tolerance within which a panel's opposite corners, or its neighbours', could be taken for each other."""
+    corners = np.array([panel.corners for panel in panels])
+    sides = [corners[:, 0] - corners[:, 1], corners[:, :, 0] - corners[:, :, 1]]
+    shortest = np.min([np.linalg.norm(side, axis=-1).min(axis=-1) for side in sides], axis=0)
+    panel = int(shortest.argmin())
+    if seam_tolerance > LARGEST_TOLERANCE * shortest[panel]:
+        raise SettingsError(
+            f"The seam tolerance of {seam_tolerance:g} mm is too large for panel '{panels[panel].name}', two corners "
+            f"of which are {shortest[panel]:.4g} mm apart: at most {LARGEST_TOLERANCE * shortest[panel]:.4g} mm."
+        )
 
 
 def _panel(raw: RawPanel, source: str) -> PanelReference:

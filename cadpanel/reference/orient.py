@@ -97,11 +97,16 @@ def _bend(side: Side) -> float:
 
     Turning sideways (the twist of a flange) does not count.
     """
+    return float(np.sum(_leans(side)))
+
+
+def _leans(side: Side) -> Array:
+    """(k - 1,) the same from each point of a side to the next."""
     steps = np.diff(side.normals, axis=0)
     sizes = norm(steps)
     angles = 2.0 * np.arcsin(np.clip(0.5 * sizes, 0.0, 1.0))
     forwards = np.einsum("kd,kd->k", unit(steps), unit(np.diff(side.points, axis=0)))
-    return float(np.sum(angles * forwards))
+    return np.asarray(angles * forwards)
 
 
 def _spread(side: Side) -> float:
@@ -114,6 +119,13 @@ def _check_fold(name: str, source: str, across: float, ends: tuple[Side, Side], 
     along = max(_spread(side) for side in long_edges)
     width = sum(side.length for side in ends)
     length = sum(side.length for side in long_edges)
+    to_and_fro = max(float(np.degrees(np.abs(_leans(side)).sum())) for side in (*ends, *long_edges))
+    if across < LEAST_FOLD and to_and_fro >= 2.0 * LEAST_FOLD:
+        raise PanelError(
+            name,
+            f"in '{source}', it bends to and fro like an S (its normals turn by {to_and_fro:.0f} degrees on the way, "
+            f"by {across:.2g} in the end), where a panel folds one way: divide it where the bend changes sides.",
+        )
     if max(across, along) < LEAST_FOLD:
         raise PanelError(
             name,

@@ -37,7 +37,8 @@ def refuse_duplicates(panels: Sequence[PanelReference], source: str, tolerance: 
             if first < second < len(panels) and _same_outline(panels[first], panels[second], tolerance):
                 raise PanelError(
                     panels[second].name,
-                    f"in '{source}', it lies exactly on panel '{panels[first].name}': delete one of the two.",
+                    f"in '{source}', it lies on panel '{panels[first].name}' to within {tolerance:g} mm: "
+                    "delete one of the two.",
                 )
 
 

@@ -174,6 +174,14 @@ def test_flat_sheet_is_refused():
         one(RawPanel(name="flat", faces=(sampled_face(square(lambda x, _: 0.0 * x), (0.0, 1.0)),)))
 
 
+def test_sheet_that_bends_to_and_fro_is_not_called_flat():
+    def wave(u, v):
+        return np.stack([2000.0 * v, 500.0 * u, 200.0 * np.sin(2.0 * np.pi * u / 3.0)], axis=-1)
+
+    with pytest.raises(PanelError, match=r"bends to and fro like an S .* divide it where the bend changes sides"):
+        one(raw_panel(wave))
+
+
 def test_faces_apart_are_refused_and_touching_ones_pass():
     lip = Lip()
     faces = sampled_face(lip, (0.0, 1.0)), sampled_face(lip, (1.0, 2.0))

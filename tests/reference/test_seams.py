@@ -112,7 +112,7 @@ def test_third_panel_at_one_end_is_refused_with_all_names():
 def test_duplicated_panel_is_refused_with_both_names_however_it_is_cut():
     for cuts in ((0.0, 1.0, 2.0, 3.0), (0.0, 1.0, 3.0)):
         copy = raw_panel(Lip(start=4000.0), "copy", cuts)
-        with pytest.raises(PanelError, match=r"Panel 'copy': in 'a.step', it lies exactly on panel 'lip 2'"):
+        with pytest.raises(PanelError, match=r"Panel 'copy': in 'a.step', it lies on panel 'lip 2' to within 1 mm"):
             assemble([*STRIP, copy], "a.step")
 
 
@@ -120,6 +120,17 @@ def test_duplicated_panel_is_refused_with_both_names_however_it_is_cut():
 def test_tolerance_must_be_a_positive_length(tolerance):
     with pytest.raises(SettingsError, match="seam tolerance must be a positive length"):
         assemble(STRIP, "a.step", seam_tolerance=tolerance)
+
+
+@pytest.mark.parametrize("tolerance", ["1", None])
+def test_tolerance_that_is_no_number_is_refused(tolerance):
+    with pytest.raises(SettingsError, match="must be a positive length in mm, not"):
+        assemble(STRIP, "a.step", seam_tolerance=tolerance)
+
+
+def test_tolerance_as_large_as_a_panel_is_refused_with_the_largest_that_is_not():
+    with pytest.raises(SettingsError, match=r"too large for panel 'lip \d'.*at most [\d.]+ mm"):
+        assemble(STRIP, "a.step", seam_tolerance=2000.0)
 
 
 def test_no_panels_are_refused():

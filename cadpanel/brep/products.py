@@ -15,10 +15,6 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Check
 from OCP.Standard import Standard_Failure
 from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.StepData import StepData_StepModel
-from OCP.StepGeom import StepGeom_GeometricRepresentationItem
-from OCP.StepRepr import StepRepr_DefinitionalRepresentation
-from OCP.StepShape import StepShape_TopologicalRepresentationItem
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
@@ -30,6 +26,7 @@ from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cadpanel.brep.instance_check import damaged_instance
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.errors import ReferenceFileError
 
@@ -38,13 +35,6 @@ GENERIC_NAME = re.compile(
     r"|Open CASCADE .*|Open_CASCADE.*|=>\[.*\]|NAUO\d*|"
     r"(compound|shell|open shell|face|surface|product|part|none|unnamed|no name)[ _.:#-]*\d*",
     re.IGNORECASE,
-)
-
-# What shapes are made of in a STEP file; parameter curves lie in representations of their own.
-SHAPE_DEFINING = (
-    StepGeom_GeometricRepresentationItem,
-    StepShape_TopologicalRepresentationItem,
-    StepRepr_DefinitionalRepresentation,
 )
 
 
@@ -114,7 +104,9 @@ def _transfer(path: Path, document: TDocStd_Document) -> None:
     syntax = reader.Reader().StepModel().GlobalCheck(True)
     if syntax.HasFailed():
         raise ReferenceFileError(f"'{path.name}' is damaged ({_first_fail(syntax)}): export the reference again.")
-    _check_instances(path, reader.Reader().StepModel())
+    damage = damaged_instance(reader.Reader().StepModel())
+    if damage is not None:
+        raise ReferenceFileError(f"'{path.name}' is damaged in {damage}: export the reference again.")
     reader.Transfer(document)
     checks = reader.Reader().WS().TransferReader().LastCheckList()
     checks.Start()
@@ -125,23 +117,6 @@ def _transfer(path: Path, document: TDocStd_Document) -> None:
                 "repair it and export the reference again."
             )
         checks.Next()
-
-
-def _check_instances(path: Path, model: StepData_StepModel) -> None:
-    """Refuse geometry whose parameters are missing or of a wrong kind: the kernel guesses them, or crashes over them.
-
-    Texts that are none are let through, as no shape depends on them, and so is whatever is not geometry or topology.
-    """
-    for number in range(1, model.NbEntities() + 1):
-        if not model.IsErrorEntity(number):
-            continue
-        entity, check = model.Value(number), model.ReportEntity(number).Check()
-        faults = [str(check.CFail(index)).strip() for index in range(1, check.NbFails() + 1)]
-        faults = [fault for fault in faults if not fault.endswith("not a quoted String")]
-        if faults and any(entity.IsKind(kind.get_type_descriptor_s()) for kind in SHAPE_DEFINING):
-            raise ReferenceFileError(
-                f"'{path.name}' is damaged in instance {number} of its data ({faults[0]}): export the reference again."
-            )
 
 
 def _first_fail(check: Interface_Check) -> str:

@@ -21,6 +21,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cadpanel.brep.instance_check import damaged_instance
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.brep.step_product import Schema, step_file
 from cadpanel.brep.step_topology import UnsupportedGeometry
@@ -98,7 +99,7 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
             says, and reading takes less than half the time.
 
     Raises:
-        DeliveryError: if the file is missing, not STEP, or cut short.
+        DeliveryError: if the file is missing, not STEP, cut short, or damaged.
     """
     target = Path(path)
     if not target.is_file():
@@ -110,6 +111,9 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     reader.SetNameMode(True)
     if reader.ReadFile(str(target)) != IFSelect_RetDone:
         raise DeliveryError(f"{target} cannot be read: it is not a complete STEP file.")
+    damage = damaged_instance(reader.Reader().StepModel())
+    if damage is not None:
+        raise DeliveryError(f"{target} cannot be read: it is damaged in {damage}.")
     if not heal:
         # Only now: reading a file sets them back.
         reader.SetShapeFixParameters(_no_healing())

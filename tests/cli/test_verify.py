@@ -114,6 +114,20 @@ def test_a_panel_without_a_shape_is_found_out(run: Run, delivery: Path, name: st
     assert "Panel 'N-01'" in answer.err
 
 
+@pytest.mark.parametrize("name", ["panels.step", "skins.step"])
+@pytest.mark.parametrize(("whole", "damaged"), [(r"LINE\('',(#\d+),#\d+\)", r"LINE('',\1,\1)"), (r"=LINE\(", "=LANE(")])
+def test_a_step_file_over_which_the_kernel_would_crash_is_one_sentence(
+    run: Run, delivery: Path, name: str, whole: str, damaged: str
+) -> None:
+    text, count = re.subn(whole, damaged, (delivery / name).read_text(encoding="ascii"), count=1)
+    assert count == 1
+    (delivery / name).write_text(text, encoding="ascii")
+    answer = run("verify", delivery)
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert "is damaged in instance" in answer.err
+
+
 @pytest.mark.parametrize("name", ["report.json", "panels.step", "skins.step"])
 @pytest.mark.parametrize("fault", ["missing", "empty", "cut", "binary"])
 def test_a_file_that_cannot_be_read_is_one_sentence(run: Run, delivery: Path, name: str, fault: str) -> None:

@@ -72,7 +72,8 @@ def fit(
 
         print_report(report, out, time.perf_counter() - began)
     if shortfall is not None:
-        sys.stderr.write(f"{shortfall[0].upper()}{shortfall[1:]}.\n")
+        words = " ".join(shortfall.split())  # on one line, whatever the panels' names hold
+        sys.stderr.write(f"{words[0].upper()}{words[1:]}.\n")
         raise typer.Exit(1)
 
 

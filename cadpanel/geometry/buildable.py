@@ -7,7 +7,7 @@ linear in the depth, so what holds on both holds inside. Millimetres and radians
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -65,6 +65,8 @@ def check_buildable(shape: PanelShape, thickness: float, skin_side: SkinSide = "
             shape.name,
             f"the sheet thickness is {thickness} mm; give a number from {THINNEST_SHEET:g} to {THICKEST_SHEET:g}.",
         )
+    if skin_side not in get_args(SkinSide):
+        raise PanelError(shape.name, f"the skin side is '{skin_side}'; give {' or '.join(get_args(SkinSide))}.")
     check_skin(shape)
     away = other_face(shape, thickness, skin_side)
     _check_thickness(shape, away, thickness)

@@ -22,7 +22,7 @@ from cadpanel.delivery.files import write_solids
 from cadpanel.delivery.report import read_report
 from cadpanel.delivery.sheet import Schema
 from tests.cli.conftest import Run
-from tests.reference_shapes import Array, Lip, kernel_face, kernel_lip, write_products
+from tests.reference_shapes import Array, Lip, kernel_face, kernel_lip, strip, write_products
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
@@ -136,6 +136,14 @@ def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     assert answer.code == 1
     assert "Panel 'N-03' is missing among the solids." in answer.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missed_tolerance_is_one_line_whatever_the_panels_are_called(run: Run, tmp_path: Path) -> None:
+    lips = [(f"roof\nedge {index}", kernel_lip(lip)) for index, lip in enumerate(strip(2))]
+    answer = run("fit", write_products(tmp_path / "two.step", lips), "--out", tmp_path / "out", "--method", "local")
+    assert answer.code == 1
+    assert answer.err.count("\n") == 1
+    assert "'roof edge 0'" in answer.err
 
 
 # ------------------------------------------------------------------------------------------------------------ refusals

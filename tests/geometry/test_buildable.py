@@ -44,7 +44,11 @@ def test_patch_numbers_that_are_not_finite_are_refused(field):
     refused(replace(shape, patches=patches), "not finite")
 
 
-@pytest.mark.parametrize("thickness", [0.0, -1.0, math.nan, math.inf])
+def test_a_side_that_is_none_is_refused():
+    refused(folded_panel(), "the skin side is 'left'; give outer or inner", skin_side="left")
+
+
+@pytest.mark.parametrize("thickness", [0.0, -1.0, 1e-9, 1e308, math.nan, math.inf])
 def test_a_thickness_that_is_not_positive_is_refused(thickness):
     refused(folded_panel(), "thickness", thickness)
 

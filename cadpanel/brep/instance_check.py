@@ -1,4 +1,4 @@
-"""What the kernel noted about a STEP file's instances while it read them, and would then pass over."""
+"""What the kernel noted about a STEP file while it read it, and would then pass over."""
 
 from __future__ import annotations
 
@@ -15,14 +15,18 @@ SHAPE_DEFINING = (
 )
 
 
-def damaged_instance(model: StepData_StepModel) -> str | None:
-    """Geometry with a parameter that is missing or of a wrong kind: the kernel makes one up, or crashes over it.
+def damage(model: StepData_StepModel) -> str | None:
+    """Faults of syntax, and geometry with a parameter that is missing or of a wrong kind.
 
-    Texts that are none are let through, as no shape depends on them, and so is whatever is not geometry or topology.
+    The kernel makes such a parameter up, or crashes over it. Texts that are none are let through, as no shape depends
+    on them, and so is whatever is not geometry or topology.
 
     Returns:
-        The first such instance and what is wrong with it, or None.
+        What is wrong first, or None.
     """
+    syntax = model.GlobalCheck(True)
+    if syntax.HasFailed():
+        return str(syntax.CFail(1)).strip().rstrip(".")
     for number in range(1, model.NbEntities() + 1):
         if not model.IsErrorEntity(number):
             continue
@@ -30,5 +34,5 @@ def damaged_instance(model: StepData_StepModel) -> str | None:
         faults = [str(check.CFail(index)).strip() for index in range(1, check.NbFails() + 1)]
         faults = [fault for fault in faults if not fault.endswith("not a quoted String")]
         if faults and any(entity.IsKind(kind.get_type_descriptor_s()) for kind in SHAPE_DEFINING):
-            return f"instance {number} of its data ({faults[0]})"
+            return f"instance {number} of its data: {faults[0]}"
     return None

@@ -26,7 +26,7 @@ from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cadpanel.brep.instance_check import damaged_instance
+from cadpanel.brep.instance_check import damage
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.errors import ReferenceFileError
 
@@ -101,12 +101,9 @@ def _transfer(path: Path, document: TDocStd_Document) -> None:
         leave_out(False)
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise ReferenceFileError(f"'{path.name}' is damaged: the CAD kernel cannot read it; export it again.")
-    syntax = reader.Reader().StepModel().GlobalCheck(True)
-    if syntax.HasFailed():
-        raise ReferenceFileError(f"'{path.name}' is damaged ({_first_fail(syntax)}): export the reference again.")
-    damage = damaged_instance(reader.Reader().StepModel())
-    if damage is not None:
-        raise ReferenceFileError(f"'{path.name}' is damaged in {damage}: export the reference again.")
+    fault = damage(reader.Reader().StepModel())
+    if fault is not None:
+        raise ReferenceFileError(f"'{path.name}' is damaged ({fault}): export the reference again.")
     reader.Transfer(document)
     checks = reader.Reader().WS().TransferReader().LastCheckList()
     checks.Start()

@@ -21,7 +21,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cadpanel.brep.instance_check import damaged_instance
+from cadpanel.brep.instance_check import damage
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.brep.step_product import Schema, step_file
 from cadpanel.brep.step_topology import UnsupportedGeometry
@@ -111,9 +111,9 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     reader.SetNameMode(True)
     if reader.ReadFile(str(target)) != IFSelect_RetDone:
         raise DeliveryError(f"{target} cannot be read: it is not a complete STEP file.")
-    damage = damaged_instance(reader.Reader().StepModel())
-    if damage is not None:
-        raise DeliveryError(f"{target} cannot be read: it is damaged in {damage}.")
+    fault = damage(reader.Reader().StepModel())
+    if fault is not None:
+        raise DeliveryError(f"{target} cannot be read: it is damaged ({fault}).")
     if not heal:
         # Only now: reading a file sets them back.
         reader.SetShapeFixParameters(_no_healing())

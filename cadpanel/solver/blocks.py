@@ -90,6 +90,13 @@ class BlockPattern:
         high, low = np.maximum(row, column), np.minimum(row, column)
         set_(self, "_coupling_at", low * width + high - low)
 
+    def around(self, values: Array) -> Array:
+        """(count,) the sum of values (count,) over each block and those coupled to it."""
+        total = values.copy()
+        np.add.at(total, self.pairs[:, 0], values[self.pairs[:, 1]])
+        np.add.at(total, self.pairs[:, 1], values[self.pairs[:, 0]])
+        return total
+
     def solve(self, normal: Normal, damping: Array) -> Array | None:
         """(count, size) the step s of (J^T J + diag(damping)) s = -gradient, or None if it is not positive definite.
 

@@ -35,7 +35,8 @@ class Schedule:
         steady: relative change of the free cost between two rounds below which it is at rest.
         slack: how far above its distance a vector may be for the balance to end.
         aim: share of the distances that the weights steer to.
-        patience: rounds without a smaller total violation after which it moves on: from balance to close, from close to an end.
+        patience: rounds without a smaller total violation after which it moves on: from balance to close, from close to
+            an end.
         inner: stopping of the solve in a round.
     """
 

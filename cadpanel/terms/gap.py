@@ -78,7 +78,7 @@ class CornerGap:
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
         residual = self.hold.roots()[..., None] * self.vectors(state)
-        return booked_cost(residual, self.seams.panels[:, 0], len(self.place.origins))
+        return booked_cost(residual, tuple(self.seams.panels.T), len(self.place.origins))
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""

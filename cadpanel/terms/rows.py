@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -50,7 +51,7 @@ class Rows:
 
     def booked(self, panels: int) -> Array:
         """(panels,) cost, booked on the first panel of each group."""
-        return booked_cost(self.residual, self.panels[0], panels)
+        return booked_cost(self.residual, self.panels, panels)
 
     def add_to(self, normal: Normal) -> None:
         """Add J^T r and J^T J."""
@@ -71,10 +72,19 @@ def add_rows(rows: list[Rows], normal: Normal, panels: int) -> Array:
     return cost
 
 
-def booked_cost(residual: Array, panels: IntArray, count: int) -> Array:
-    """(count,) half the squares of `residual` (groups, ...), booked on `panels` (groups,)."""
-    half_squares = 0.5 * np.sum(residual**2, axis=tuple(range(1, residual.ndim)))
-    return np.bincount(panels, half_squares, minlength=count).astype(np.float64, copy=False)
+def booked_cost(residual: Array, panels: Sequence[IntArray], count: int) -> Array:
+    """(count,) half the squares of `residual` (groups, ...), booked on the panels of each group in equal parts.
+
+    Args:
+        residual: rows in groups.
+        panels: one or two index arrays (groups,).
+        count: number of panels.
+    """
+    share = 0.5 / len(panels) * np.sum(residual**2, axis=tuple(range(1, residual.ndim)))
+    cost = np.zeros(count)
+    for index in panels:
+        cost += np.bincount(index, share, minlength=count)
+    return cost
 
 
 def scatter_add(target: Array, index: IntArray, values: Array) -> None:

@@ -34,8 +34,8 @@ Array = NDArray[np.float64]
 app = typer.Typer(add_completion=False)
 
 # Costs within this share of each other count as the same; our own solve goes on until far less is to be gained.
-SAME_COST = 1e-4
-OURS = Stopping(cost=1e-5, iterations=200)
+SAME_COST = 1e-3
+OURS = Stopping(cost=1e-4, iterations=200)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class _ReachedError(Exception):
     """scipy's cost is as low as ours."""
 
 
-def scipys(prepared: Prepared, target: float, limit: float) -> tuple[float, float]:
+def scipys(prepared: Prepared, target: float, limit: float, *, scaled: bool) -> tuple[float, float]:
     """Seconds until scipy's cost is down to `target`, or until `limit` seconds are over, and the cost it reached."""
     shape = prepared.start.shape
     began = time.perf_counter()
@@ -98,7 +98,7 @@ def scipys(prepared: Prepared, target: float, limit: float) -> tuple[float, floa
             jac=jacobian,
             method="trf",
             tr_solver="lsmr",
-            x_scale="jac",
+            x_scale="jac" if scaled else 1.0,
             ftol=1e-15,
             xtol=1e-15,
             gtol=1e-15,
@@ -123,6 +123,7 @@ def scipy(
     panels: Annotated[list[int], typer.Option(help="Strips to solve.")],
     gap_weight: Annotated[float, typer.Option(help="Weight of a squared corner gap.")] = 1.0,
     limit: Annotated[float, typer.Option(help="Seconds after which scipy is stopped.")] = 600.0,
+    scaled: Annotated[bool, typer.Option(help="Let scipy scale the unknowns by the Jacobian.")] = False,
 ) -> None:
     """Time to the same cost: ours against scipy's trust region with LSMR and the exact sparse Jacobian."""
     print(f"{'panels':>7} {'ours, s':>9} {'steps':>6} {'scipy, s':>9} {'ratio':>7}  cost of scipy against ours")
@@ -130,7 +131,7 @@ def scipy(
         prepared = prepare(count, gap_weight)
         solution, seconds = ours(prepared)
         cost = float(solution.cost.sum())
-        theirs, reached = scipys(prepared, cost * (1.0 + SAME_COST), limit)
+        theirs, reached = scipys(prepared, cost * (1.0 + SAME_COST), limit, scaled=scaled)
         print(
             f"{count:7d} {seconds:9.3f} {solution.iterations:6d} {theirs:9.2f} {theirs / seconds:7.1f}  "
             f"{reached / cost:.5f}",

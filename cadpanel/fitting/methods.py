@@ -19,6 +19,7 @@ from cadpanel.terms.arc import ArcGap
 from cadpanel.terms.drift import DriftLimit
 from cadpanel.terms.gap import CornerGap
 from cadpanel.terms.rows import Term
+from cadpanel.terms.state import State
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, float], None]
@@ -156,15 +157,28 @@ def _as_it_is(unknowns: Array) -> Array:
     return unknowns
 
 
+class _Walker:
+    """Walks the panels once for all that ask at the same unknowns, one after the other."""
+
+    def __init__(self, problem: Problem, fill: Callable[[Array], Array]) -> None:
+        self._problem, self._fill = problem, fill
+        self._last: tuple[Array, State] | None = None
+
+    def state(self, unknowns: Array) -> State:
+        if self._last is None or self._last[0] is not unknowns:
+            self._last = (unknowns, self._problem.state(self._fill(unknowns)))
+        return self._last[1]
+
+
 class _HeldTerm:
     """A held term as the solver sees it: by the model's unknowns."""
 
-    def __init__(self, problem: Problem, term: CornerGap | ArcGap | DriftLimit, fill: Callable[[Array], Array]) -> None:
+    def __init__(self, walker: _Walker, term: CornerGap | ArcGap | DriftLimit) -> None:
         self.hold = term.hold
-        self._problem, self._term, self._fill = problem, term, fill
+        self._walker, self._term = walker, term
 
     def vectors_at(self, unknowns: Array) -> Array:
-        return self._term.vectors(self._problem.state(self._fill(unknowns)))
+        return self._term.vectors(self._walker.state(unknowns))
 
 
 def _balance(
@@ -178,10 +192,11 @@ def _balance(
     progress: Progress | None = None,
     schedule: Schedule = _WHOLE,
 ) -> Fitted:
-    terms = [_HeldTerm(problem, term, fill) for term in held]
+    walker = _Walker(problem, fill)
+    terms = [_HeldTerm(walker, term) for term in held]
 
     def deviation(unknowns: Array) -> float:
-        return float(problem.deviation.cost(problem.state(fill(unknowns))).sum())
+        return float(problem.deviation.cost(walker.state(unknowns)).sum())
 
     best_alone = float(problem.deviation.cost(problem.state(local)).sum())
     most = max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)

@@ -58,7 +58,7 @@ class DriftLimit:
 
     def __init__(self, outline: Outline, limit: Array, *, across: bool) -> None:
         """`limit` (panels,) in units of the solver's length."""
-        self.outline, self.across = outline, across
+        self.outline = outline
         rulings = outline.corners.shape[2]
         self._rulings = np.array([0, rulings - 1]) if across else np.arange(rulings)
         along = outline.along[:, :, self._rulings]

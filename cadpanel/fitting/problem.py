@@ -14,6 +14,7 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start import SampleArrays, Start, end_plane
 from cadpanel.reference.model import Reference
 from cadpanel.solver.blocks import BlockPattern, Normal
+from cadpanel.solver.levenberg_marquardt import Bounds
 from cadpanel.terms.arc import ArcGap
 from cadpanel.terms.deviation import Deviation, assign, skin_normals
 from cadpanel.terms.drift import DriftLimit, Outline
@@ -166,6 +167,7 @@ class Objective:
         self.terms = tuple(terms)
         pairs = of.pairs if coupled else np.empty((0, 2), dtype=np.intp)
         self.pattern = BlockPattern(of.panels, len(of.feature.free), pairs)
+        self.bounds: Bounds | None = None
 
     def cost(self, unknowns: Array) -> Array:
         """See `solver.Model.cost`."""
@@ -197,6 +199,7 @@ class Subset:
         """The others stay at `frozen` (panels, free)."""
         self.active = active
         self.pattern = BlockPattern(model.pattern.count, len(active), model.pattern.pairs)
+        self.bounds: Bounds | None = None
         self._model, self._frozen = model, frozen
 
     def fill(self, unknowns: Array) -> Array:

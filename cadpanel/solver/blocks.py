@@ -17,6 +17,7 @@ from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
 
 
 @dataclass(slots=True)
@@ -37,6 +38,15 @@ class Normal:
     def zero(count: int, size: int, pairs: int) -> Normal:
         """An empty model to add to."""
         return Normal(np.zeros((count, size)), np.zeros((count, size, size)), np.zeros((pairs, size, size)))
+
+    def without(self, held: BoolArray, pairs: IntArray) -> Normal:
+        """The model of a step that leaves the unknowns `held` (count, size) where they are."""
+        free = ~held
+        diagonal = self.diagonal * (free[:, :, None] & free[:, None, :])
+        i = np.arange(held.shape[1])
+        diagonal[:, i, i] += held
+        coupling = self.coupling * (free[pairs[:, 0], :, None] & free[pairs[:, 1], None, :])
+        return Normal(self.gradient * free, diagonal, coupling)
 
 
 @dataclass(frozen=True)
@@ -96,6 +106,14 @@ class BlockPattern:
         np.add.at(total, self.pairs[:, 0], values[self.pairs[:, 1]])
         np.add.at(total, self.pairs[:, 1], values[self.pairs[:, 0]])
         return total
+
+    def multiply(self, normal: Normal, vectors: Array) -> Array:
+        """(count, size) the product of J^T J with vectors (count, size)."""
+        product = (normal.diagonal @ vectors[..., None])[..., 0]
+        first, second = self.pairs.T
+        np.add.at(product, first, (normal.coupling @ vectors[second, :, None])[..., 0])
+        np.add.at(product, second, (np.swapaxes(normal.coupling, 1, 2) @ vectors[first, :, None])[..., 0])
+        return product
 
     def solve(self, normal: Normal, damping: Array) -> Array | None:
         """(count, size) the step s of (J^T J + diag(damping)) s = -gradient, or None if it is not positive definite.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.hold import Hold
+from cadpanel.solver.levenberg_marquardt import Bounds
 
 Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]
@@ -51,6 +52,7 @@ class Separate:
     jacobian: Residual
     pattern: BlockPattern
     scale: Array
+    bounds: Bounds | None = None
 
     def cost(self, unknowns: Array) -> Array:
         """Half the squares, block by block."""
@@ -106,6 +108,7 @@ class HeldPoints:
         """`targets` and `centres` (points, d), `radius` (points,)."""
         self.targets, self.centres = targets, centres
         self.hold = Hold(radius[:, None], weight=weight, least=1e-9)
+        self.bounds = None
         self.pattern = pattern(targets.shape[0], targets.shape[1], [])
 
     def vectors_at(self, unknowns: Array) -> Array:
@@ -139,6 +142,7 @@ class HeldChain:
         """`targets` (points, d)."""
         self.targets = targets
         self.hold = Hold(np.full((len(targets) - 1, 1), radius), weight=1.0, least=1e-9)
+        self.bounds = None
         self.pattern = pattern(targets.shape[0], targets.shape[1], strip(len(targets)))
 
     def vectors_at(self, unknowns: Array) -> Array:
@@ -169,4 +173,34 @@ class HeldChain:
         normal.diagonal[:-1] += block
         normal.diagonal[1:] += block
         normal.coupling -= block
+        return self.cost(unknowns), normal
+
+
+class LinearChain:
+    """A strip of blocks with residual A u - b and narrow bounds."""
+
+    def __init__(self, random: np.random.Generator, blocks: int, size: int) -> None:
+        self.pattern = pattern(blocks, size, strip(blocks))
+        rows = 3 * size
+        self.matrix = np.zeros((blocks * rows, blocks * size))
+        for k in range(blocks):
+            wide = slice(k * size, min(k + 2, blocks) * size)
+            self.matrix[k * rows : (k + 1) * rows, wide] = random.normal(size=(rows, wide.stop - wide.start))
+        self.right = random.normal(size=len(self.matrix))
+        self._rows = rows
+        self.bounds = Bounds(np.full((blocks, size), -0.1), np.full((blocks, size), 0.1))
+
+    def cost(self, unknowns: Array) -> Array:
+        """Half the squares, booked on the block that a row begins with."""
+        residual = self.matrix @ unknowns.ravel() - self.right
+        booked: Array = 0.5 * np.sum(residual.reshape(len(unknowns), -1) ** 2, axis=1)
+        return booked
+
+    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
+        """The Gauss-Newton model."""
+        count, size = unknowns.shape
+        residual = self.matrix @ unknowns.ravel() - self.right
+        square = (self.matrix.T @ self.matrix).reshape(count, size, count, size)
+        i = np.arange(count)
+        normal = Normal((self.matrix.T @ residual).reshape(count, size), square[i, :, i], square[i[:-1], :, i[1:]])
         return self.cost(unknowns), normal

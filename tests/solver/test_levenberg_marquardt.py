@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import lsq_linear
 
-from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
+from cadpanel.solver.levenberg_marquardt import Bounds, Stopping, levenberg_marquardt
 from tests.solver.models import (
     HeldChain,
+    LinearChain,
     Separate,
     pattern,
     powell,
@@ -120,3 +122,24 @@ def test_a_trial_that_makes_no_sense_is_refused():
     model = Logarithm(lambda u: np.log(u), lambda u: np.diag(1.0 / u), pattern(1, 1, []), np.ones(1))
     solution = levenberg_marquardt(model, start, TIGHT)
     assert solution.unknowns == pytest.approx(np.ones((1, 1)), abs=1e-7)
+
+
+@few
+@given(seed=st.integers(0, 2**32 - 1))
+def test_bounds_are_kept_and_end_where_a_bounded_linear_solver_ends(seed):
+    """Coupled blocks with a linear residual against scipy's bounded-variable least squares."""
+    random = np.random.default_rng(seed)
+    chain = LinearChain(random, blocks=4, size=3)
+    solution = levenberg_marquardt(chain, np.zeros((4, 3)), TIGHT)
+    wanted = lsq_linear(chain.matrix, chain.right, (chain.bounds.lower.ravel(), chain.bounds.upper.ravel()), tol=1e-13)
+    assert np.all((solution.unknowns >= chain.bounds.lower) & (solution.unknowns <= chain.bounds.upper))
+    assert solution.cost.sum() == pytest.approx(wanted.cost, rel=1e-9)
+    assert np.any((solution.unknowns == chain.bounds.lower) | (solution.unknowns == chain.bounds.upper))
+
+
+def test_a_start_beyond_the_bounds_is_brought_within_them():
+    start = np.array([[-1.2, 1.0]])
+    model = side_by_side(rosenbrock, rosenbrock_jacobian, start)
+    model.bounds = Bounds(np.array([[0.0, -np.inf]]), np.array([[0.5, np.inf]]))
+    solution = levenberg_marquardt(model, start, TIGHT)
+    assert solution.unknowns == pytest.approx(np.array([[0.5, 0.25]]), abs=1e-8)

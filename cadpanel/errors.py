@@ -32,6 +32,10 @@ class SettingsError(CadpanelError, ValueError):
     """A setting is out of its range or contradicts another one."""
 
 
+class FitError(CadpanelError, ValueError):
+    """The samples given to an atomic fit are no numbers, too few, or do not determine a surface."""
+
+
 class DeliveryError(CadpanelError, OSError):
     """A delivery folder cannot be written or read."""
 

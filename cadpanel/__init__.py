@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from cadpanel.errors import (
     CadpanelError,
     DeliveryError,
+    FitError,
     PanelError,
     ProofError,
     ReferenceFileError,
@@ -25,32 +26,51 @@ from cadpanel.errors import (
 )
 
 if TYPE_CHECKING:
-    from cadpanel.api import compare, deliver, fit, read, to_build123d, to_cadquery, write_step
+    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
     from cadpanel.brep.skin import build_skin
     from cadpanel.brep.solid import build_solid
+    from cadpanel.brep.survey import Survey
     from cadpanel.delivery.verify import Verification, verify
+    from cadpanel.features.feature import Feature
+    from cadpanel.features.patches import Cone, Cylinder, Plane
+    from cadpanel.fitting.atomic.cone import fit_cone
+    from cadpanel.fitting.atomic.cylinder import fit_cylinder
+    from cadpanel.fitting.atomic.plane import fit_plane
+    from cadpanel.fitting.atomic.result import ConeFit, CylinderFit, PlaneFit
     from cadpanel.fitting.measures import Measures
     from cadpanel.fitting.result import FitResult
     from cadpanel.fitting.settings import FitSettings, Weights
-    from cadpanel.geometry.shape import ConePatch, PanelShape, PlanePatch
+    from cadpanel.geometry.shape import ConePatch, PanelShape, PlanePatch, PolygonShape
     from cadpanel.reference.model import PanelReference, Reference, Seam
+    from cadpanel.reference.settings import ReferenceSettings
 
 __all__ = [
     "CadpanelError",
+    "Cone",
+    "ConeFit",
     "ConePatch",
+    "Cylinder",
+    "CylinderFit",
     "DeliveryError",
+    "Feature",
+    "FitError",
     "FitResult",
     "FitSettings",
     "Measures",
     "PanelError",
     "PanelReference",
     "PanelShape",
+    "Plane",
+    "PlaneFit",
     "PlanePatch",
+    "PolygonShape",
     "ProofError",
     "Reference",
     "ReferenceFileError",
+    "ReferenceSettings",
     "Seam",
     "SettingsError",
+    "Survey",
     "Verification",
     "Weights",
     "build_skin",
@@ -58,6 +78,10 @@ __all__ = [
     "compare",
     "deliver",
     "fit",
+    "fit_cone",
+    "fit_cylinder",
+    "fit_plane",
+    "inspect",
     "read",
     "to_build123d",
     "to_cadquery",
@@ -67,15 +91,23 @@ __all__ = [
 
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
-        "api": ("compare", "deliver", "fit", "read", "to_build123d", "to_cadquery", "write_step"),
+        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
         "brep.skin": ("build_skin",),
         "brep.solid": ("build_solid",),
+        "brep.survey": ("Survey",),
         "delivery.verify": ("Verification", "verify"),
+        "features.feature": ("Feature",),
+        "features.patches": ("Cone", "Cylinder", "Plane"),
+        "fitting.atomic.cone": ("fit_cone",),
+        "fitting.atomic.cylinder": ("fit_cylinder",),
+        "fitting.atomic.plane": ("fit_plane",),
+        "fitting.atomic.result": ("ConeFit", "CylinderFit", "PlaneFit"),
         "fitting.measures": ("Measures",),
         "fitting.result": ("FitResult",),
         "fitting.settings": ("FitSettings", "Weights"),
-        "geometry.shape": ("ConePatch", "PanelShape", "PlanePatch"),
+        "geometry.shape": ("ConePatch", "PanelShape", "PlanePatch", "PolygonShape"),
         "reference.model": ("PanelReference", "Reference", "Seam"),
+        "reference.settings": ("ReferenceSettings",),
     }
     _HOME_OF = {name: f"cadpanel.{home}" for home, names in _HOMES.items() for name in names}
 

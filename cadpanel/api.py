@@ -6,22 +6,26 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict, Unpack, overload
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 
-from cadpanel.features.feature import Tilt
+from cadpanel.features.catalogue import Tilt
+from cadpanel.features.feature import Feature
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.result import fit as fit_reference
 from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.geometry.buildable import SkinSide
-from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
 from cadpanel.reference.model import Reference
+from cadpanel.reference.settings import By, ReferenceSettings
 
 if TYPE_CHECKING:
     import build123d
     import cadquery
 
+    from cadpanel.brep.survey import Survey
     from cadpanel.delivery.build import PanelSheet
     from cadpanel.delivery.build import Progress as DeliveryProgress
     from cadpanel.delivery.compare import Progress as CompareProgress
@@ -33,32 +37,78 @@ if TYPE_CHECKING:
 class FitKeywords(TypedDict, total=False):
     """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
 
-    feature: str
+    feature: str | Feature
+    max_deviation: float | None
     tilt: Tilt
     method: Method
     gap_tolerance: float
     drift_along: float
     drift_across: float
+    min_radius: float
     weights: Weights | None
     restarts: int
     seed: int
 
 
-def read(path: str | Path, *, seam_tolerance: float = 1.0) -> Reference:
-    """Read a STEP file in which each product is one panel's faces, and find out which panels meet.
+class ReferenceKeywords(TypedDict, total=False):
+    """The fields of `ReferenceSettings`, as keywords of `read` and `inspect`."""
+
+    seam_tolerance: float
+    unit: str | None
+    faces: str | Sequence[str] | None
+    divide: int | None
+    lip: float | None
+    grid: tuple[int, int] | None
+    by: By
+    stations: Sequence[float] | None
+    spine: str | Path | None
+    network: str | Path | None
+    mesh: str | Path | None
+
+
+def read(
+    path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
+) -> Reference:
+    """Read a STEP, IGES, .brep or Rhino .3dm file into panels, and find out which of them meet.
 
     Args:
-        path: the file.
-        seam_tolerance: how far the ends of two panels that meet may lie apart, mm.
+        path: the file. Unless it is to be cut, each product in it is one panel's faces.
+        settings: how; the fields of `ReferenceSettings`.
+        changes: settings to change, for example divide=9, grid=(20, 10), network="curves.step" or faces="layer=Skin".
 
     Raises:
-        ReferenceFileError: the file cannot be read, or does not hold panels.
+        ReferenceFileError: the file cannot be read, does not hold panels, or cannot be cut into them.
         PanelError: one of the panels is none.
-        SettingsError: the tolerance is no positive length.
+        SettingsError: a setting is out of its range, or contradicts another one.
     """
     from cadpanel.brep.read import read_reference
 
-    return read_reference(path, seam_tolerance)
+    return read_reference(path, _changed(settings, changes))
+
+
+def inspect(
+    path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
+) -> Survey:
+    """Measure what a file holds: faces, curves, surfaces that hang together, and their lips.
+
+    Args:
+        path: a STEP, IGES, .brep or Rhino .3dm file.
+        settings: how to read it; its unit, faces and seam_tolerance count.
+        changes: settings to change, for example unit="m".
+
+    Raises:
+        ReferenceFileError: the file cannot be read, or holds neither faces nor curves.
+        SettingsError: a setting is out of its range.
+    """
+    from cadpanel.brep.survey import survey
+
+    return survey(path, _changed(settings, changes))
+
+
+def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> ReferenceSettings:
+    # The settings bring every form that a keyword may have into one.
+    given = {field.name: getattr(settings, field.name) for field in fields(ReferenceSettings)} if settings else {}
+    return ReferenceSettings(**cast("dict[str, Any]", {**given, **changes}))
 
 
 def fit(
@@ -154,7 +204,7 @@ def deliver(
 
 
 def to_cadquery(
-    panels: FitResult | PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> cadquery.Workplane:
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
@@ -174,11 +224,11 @@ def to_cadquery(
 
 
 @overload
-def to_build123d(panels: PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
+def to_build123d(panels: AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
 @overload
 def to_build123d(panels: FitResult, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | PanelShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> build123d.Compound:
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
@@ -194,13 +244,13 @@ def to_build123d(
     from cadpanel.brep.adapters import to_build123d_compound, to_build123d_part
 
     built = _build(panels, thickness, skin_side)
-    if isinstance(panels, PanelShape):
+    if isinstance(panels, PanelShape | PolygonShape):
         return to_build123d_part(built[0].solid, panels.name)
     return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
 
 
 def write_step(
-    panels: FitResult | PanelShape,
+    panels: FitResult | AnyShape,
     path: str | Path,
     *,
     thickness: float = 3.0,
@@ -230,14 +280,14 @@ def write_step(
 
 
 def _build(
-    panels: FitResult | PanelShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
+    panels: FitResult | AnyShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.build import build_panels
     from cadpanel.delivery.sheet import SheetSettings
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return build_panels([panels] if isinstance(panels, PanelShape) else panels.shapes, sheet)
+    return build_panels([panels] if isinstance(panels, PanelShape | PolygonShape) else panels.shapes, sheet)
 
 
-def _title(panels: FitResult | PanelShape) -> str:
-    return panels.name if isinstance(panels, PanelShape) else Path(panels.reference.source).stem
+def _title(panels: FitResult | AnyShape) -> str:
+    return panels.name if isinstance(panels, PanelShape | PolygonShape) else Path(panels.reference.source).stem

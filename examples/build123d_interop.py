@@ -30,6 +30,7 @@ for panel in facade.children:
 
 # One panel is a Part, ready for build123d's own operations: here a slot of 300 x 40 mm in its first flange.
 shape = result.shapes[0]
+assert isinstance(shape, cp.PanelShape)  # a chain of patches; flat panels with other than four corners are none
 part = cp.to_build123d(shape, thickness=3.0)
 corners = shape.corners()[:, :2].reshape(-1, 3)
 flange = bd.Plane(origin=tuple(corners.mean(axis=0)), x_dir=tuple(shape.directions[0]), z_dir=tuple(shape.normals[0]))

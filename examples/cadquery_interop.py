@@ -22,6 +22,7 @@ print(f"{panels.size()} solids, {panels.faces('%CONE').size()} conical faces")
 
 # One panel: the first ruling is the long free edge of its first flange; holes go in 60 mm from it, every 200 mm.
 shape = result.shapes[0]
+assert isinstance(shape, cp.PanelShape)  # a chain of patches; flat panels with other than four corners are none
 start, end = shape.corners()[:, 0]
 inward = shape.binormals()[0]
 normal = cq.Vector(*shape.normals[0].tolist())

@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.fitting.problem import Problem, pose
+from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.frames import cross
 from cadpanel.geometry.seam import EndCurves
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 from cadpanel.reference.model import PanelReference, Reference, Seam
 
 Array = NDArray[np.float64]
@@ -38,8 +40,37 @@ def end_curve(shape: PanelShape, end: int) -> EndCurves:
     )
 
 
-def sampled(shape: PanelShape, name: str) -> PanelReference:
+def sampled(shape: AnyShape, name: str) -> PanelReference:
     """The shape as a reference: every sample lies on it exactly."""
+    return _sampled_polygon(shape, name) if isinstance(shape, PolygonShape) else _sampled_chain(shape, name)
+
+
+def _sampled_polygon(shape: PolygonShape, name: str) -> PanelReference:
+    """Samples in the middles of the cells of a grid on each triangle between an edge and the middle of the corners.
+
+    With four corners the first edge is end 0, and the edges are told in the order and direction of ends and sides.
+    """
+    start, middle = shape.outline, shape.outline.mean(axis=0)
+    stop = np.roll(start, -1, axis=0)
+    out, along = (grid.reshape(-1, 1, 1) for grid in np.meshgrid(*2 * [(np.arange(_ACROSS) + 0.5) / _ACROSS]))
+    points = middle + out * ((1.0 - along) * start + along * stop - middle)
+    area = 0.5 * np.linalg.norm(cross(start - middle, stop - middle), axis=-1)
+    weights = np.broadcast_to(2.0 * out[..., 0] * area / _ACROSS**2, points.shape[:-1])
+    line = np.linspace(0.0, 1.0, _OUTLINE)[:, None]
+    edges = [(1.0 - line) * a + line * b for a, b in zip(start, stop, strict=True)]
+    if len(edges) == 4:
+        edges = [edges[0], edges[2][::-1], edges[3][::-1], edges[1]]
+    return PanelReference(
+        name=name,
+        points=points.reshape(-1, 3),
+        normals=np.broadcast_to(shape.normal, points.shape).reshape(-1, 3),
+        weights=weights.reshape(-1),
+        edges=tuple(edges),
+        edge_normals=tuple(np.broadcast_to(shape.normal, edge.shape) for edge in edges),
+    )
+
+
+def _sampled_chain(shape: PanelShape, name: str) -> PanelReference:
     patches = len(shape.patches)
     curves = [end_curve(shape, end) for end in (0, 1)]
     u = np.concatenate([i + (np.arange(_ACROSS) + 0.5) / _ACROSS for i in range(patches)])
@@ -62,13 +93,21 @@ def sampled(shape: PanelShape, name: str) -> PanelReference:
         points=points.reshape(-1, 3),
         normals=np.broadcast_to(normals, points.shape).reshape(-1, 3),
         weights=area.reshape(-1) / (_ALONG * _ACROSS),
-        ends=(ends[0][0][0], ends[1][0][0]),
-        end_normals=(ends[0][1][0], ends[1][1][0]),
-        sides=(sides[0], sides[1]),
+        edges=(ends[0][0][0], ends[1][0][0], *sides),
+        edge_normals=(
+            ends[0][1][0],
+            ends[1][1][0],
+            *(np.broadcast_to(shape.normals[ruling], side.shape) for ruling, side in zip((0, -1), sides, strict=True)),
+        ),
     )
 
 
-def alone(*shapes: PanelShape) -> Reference:
+def posed(reference: Reference, settings: FitSettings) -> tuple[Problem, tuple[Array, ...]]:
+    """The problem and the starts of a reference whose panels all have the settings' feature."""
+    return pose(reference, [settings.feature_for(len(panel.edges)) for panel in reference.panels])
+
+
+def alone(*shapes: AnyShape) -> Reference:
     """Panels that do not touch."""
     return Reference(
         source="known", panels=tuple(sampled(shape, f"panel {i + 1}") for i, shape in enumerate(shapes)), seams=()
@@ -79,7 +118,7 @@ def renumbered(reference: Reference, order: Sequence[int]) -> Reference:
     """The same panels in another order."""
     where = np.argsort(order)
     seams = tuple(
-        Seam(panels=(int(where[seam.panels[0]]), int(where[seam.panels[1]])), ends=seam.ends, reversed=seam.reversed)
+        Seam(panels=(int(where[seam.panels[0]]), int(where[seam.panels[1]])), edges=seam.edges, reversed=seam.reversed)
         for seam in reference.seams
     )
     return Reference(source=reference.source, panels=tuple(reference.panels[i] for i in order), seams=seams)
@@ -88,18 +127,18 @@ def renumbered(reference: Reference, order: Sequence[int]) -> Reference:
 def flipped(reference: Reference, index: int) -> Reference:
     """The same panels, one of them walked from its other end: ends and sides change places and run backwards."""
     panel = reference.panels[index]
+    order = (1, 0, 3, 2)
     turned = replace(
         panel,
-        ends=(panel.ends[1][::-1], panel.ends[0][::-1]),
-        end_normals=(panel.end_normals[1][::-1], panel.end_normals[0][::-1]),
-        sides=(panel.sides[1][::-1], panel.sides[0][::-1]),
+        edges=tuple(panel.edges[k][::-1] for k in order),
+        edge_normals=tuple(panel.edge_normals[k][::-1] for k in order),
     )
     seams = tuple(
         Seam(
             panels=seam.panels,
-            ends=(
-                1 - seam.ends[0] if seam.panels[0] == index else seam.ends[0],
-                1 - seam.ends[1] if seam.panels[1] == index else seam.ends[1],
+            edges=(
+                seam.edges[0] ^ 1 if seam.panels[0] == index else seam.edges[0],
+                seam.edges[1] ^ 1 if seam.panels[1] == index else seam.edges[1],
             ),
             reversed=seam.reversed != (index in seam.panels),
         )
@@ -117,9 +156,8 @@ def moved(reference: Reference, turn: Array, shift: Array) -> Reference:
             of,
             points=of.points @ turn.T + shift,
             normals=of.normals @ turn.T,
-            ends=(of.ends[0] @ turn.T + shift, of.ends[1] @ turn.T + shift),
-            end_normals=(of.end_normals[0] @ turn.T, of.end_normals[1] @ turn.T),
-            sides=(of.sides[0] @ turn.T + shift, of.sides[1] @ turn.T + shift),
+            edges=tuple(edge @ turn.T + shift for edge in of.edges),
+            edge_normals=tuple(normals @ turn.T for normals in of.edge_normals),
         )
 
     return replace(reference, panels=tuple(panel(of) for of in reference.panels))
@@ -131,5 +169,5 @@ def ring(panel: PanelReference, count: int, turn: Array) -> Reference:
     for i in range(count):
         panels.append(replace(reference.panels[0], name=f"panel {i + 1}"))
         reference = moved(reference, turn, np.zeros(3))
-    seams = tuple(Seam(panels=(i, (i + 1) % count), ends=(1, 0), reversed=False) for i in range(count))
+    seams = tuple(Seam(panels=(i, (i + 1) % count), edges=(1, 0), reversed=False) for i in range(count))
     return Reference(source="ring", panels=tuple(panels), seams=seams)

@@ -148,6 +148,78 @@ def raw_strip(surfaces: Iterable[Surface]) -> list[RawPanel]:
     return [raw_panel(surface, f"lip {index}") for index, surface in enumerate(surfaces)]
 
 
+def raw_grid(surface: Surface, columns: int, rows: int) -> list[RawPanel]:
+    """Sample a surface over (0, 1) x (0, 1) as panels of four sides in columns (along u) and rows (along v)."""
+    us, vs = np.linspace(0.0, 1.0, columns + 1).tolist(), np.linspace(0.0, 1.0, rows + 1).tolist()
+    return [
+        RawPanel(
+            name=f"{column}/{row}", faces=(sampled_face(surface, (us[column], us[column + 1]), (vs[row], vs[row + 1])),)
+        )
+        for row in range(rows)
+        for column in range(columns)
+    ]
+
+
+def raw_honeycomb(surface: Surface, rings: int) -> list[RawPanel]:
+    """Sample a surface around (0.5, 0.5) as hexagons: one in the middle and rings round it."""
+    panels = []
+    size = 0.5 / (np.sqrt(3.0) * (rings + 0.5))
+    for i in range(-rings, rings + 1):
+        for j in range(-rings, rings + 1):
+            if abs(i + j) > rings:
+                continue
+            middle = np.array([0.5, 0.5]) + size * np.array([np.sqrt(3.0) * (i + 0.5 * j), 1.5 * j])
+            angles = np.radians(30.0 + 60.0 * np.arange(6))
+            corners = middle + size * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+            panels.append(RawPanel(name=f"{i}/{j}", faces=(polygon_face(surface, corners),)))
+    return panels
+
+
+def polygon_face(surface: Surface, corners: Array, count: int = 5) -> FaceSamples:
+    """Sample the part of a surface over a convex polygon with the given (n, 2) corners, in parameters."""
+    middle, after = corners.mean(axis=0), np.roll(corners, -1, axis=0)
+    along = np.linspace(0.0, 1.0, EDGE_POINTS)[:, None]
+    borders = [(1.0 - along) * one + along * other for one, other in zip(corners, after, strict=True)]
+    # Every triangle from the middle to an edge is cut into strips, the wider the further out.
+    share = (np.arange(count) + 0.5) / count
+    out, aside = (grid.ravel()[:, None] for grid in np.meshgrid(share, share))
+    inside = [
+        middle + out * ((1.0 - aside) * one + aside * other - middle) for one, other in zip(corners, after, strict=True)
+    ]
+    u, v = np.concatenate(inside).T
+    area = [
+        abs(np.linalg.det(np.stack([one - middle, other - middle]))) for one, other in zip(corners, after, strict=True)
+    ]
+    parts = np.concatenate([size * out[:, 0] / count**2 for size in area])
+    stretch = np.cross(surface(u + STEP, v) - surface(u - STEP, v), surface(u, v + STEP) - surface(u, v - STEP))
+    return FaceSamples(
+        points=surface(u, v),
+        normals=normal(surface, u, v),
+        weights=parts * np.linalg.norm(stretch, axis=-1) / (2.0 * STEP) ** 2,
+        edges=tuple(surface(*border.T) for border in borders),
+        edge_normals=tuple(normal(surface, *border.T) for border in borders),
+    )
+
+
+def sheet_of(height: Callable[[Array, Array], Array], width: float = 6000.0, length: float = 8000.0) -> Surface:
+    """A sheet of that width (along u) and length (along v) with heights (mm) over its parameters."""
+
+    def surface(u: Array, v: Array) -> Array:
+        return np.stack([width * (u - 0.5), length * (v - 0.5), height(u, v)], axis=-1)
+
+    return surface
+
+
+def shuffled(panel: RawPanel, random: np.random.Generator) -> RawPanel:
+    """The panel with faces and edges in another order, some edges walked backwards and some normals turned over."""
+    faces = []
+    for index in random.permutation(len(panel.faces)):
+        face, count = panel.faces[index], len(panel.faces[index].edges)
+        face = with_edges(face, random.permutation(count).tolist(), (random.random(count) < 0.5).tolist())
+        faces.append(flipped(face) if random.random() < 0.5 else face)
+    return replace(panel, faces=tuple(faces))
+
+
 def flipped(face: FaceSamples) -> FaceSamples:
     """Return the face with its normals on the other side."""
     return replace(face, normals=-face.normals, edge_normals=tuple(-normals for normals in face.edge_normals))

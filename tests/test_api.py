@@ -13,6 +13,7 @@ import cadpanel as cp
 from cadpanel.api import FitKeywords
 from cadpanel.brep.step import read_step_shapes
 from tests.delivered import fitted, strip
+from tests.instances import random_polygon
 
 
 def test_the_keywords_of_fit_are_the_fields_of_its_settings() -> None:
@@ -79,3 +80,15 @@ def test_a_comparison_is_written_where_asked_and_only_there(tmp_path: Path) -> N
 def test_every_error_is_a_cadpanel_error() -> None:
     errors = (cp.ReferenceFileError, cp.PanelError, cp.SettingsError, cp.DeliveryError, cp.ProofError)
     assert all(issubclass(error, cp.CadpanelError) for error in errors)
+
+
+def test_a_polygon_is_built_written_and_handed_over_like_any_other_panel(tmp_path: Path) -> None:
+    shape = random_polygon(3, 6)
+    assert type(cp.build_solid(shape, 3.0)).__name__ == "TopoDS_Solid"
+    assert type(cp.build_skin(shape)).__name__ == "TopoDS_Shell"
+    volume = cp.to_cadquery(shape, thickness=2.0).val().Volume()
+    part = cp.to_build123d(shape, thickness=2.0)
+    assert part.label == shape.name
+    assert part.volume == pytest.approx(volume, rel=1e-12)
+    cp.write_step(shape, tmp_path / "one.step", skins=True)
+    assert [product for product, _ in read_step_shapes(tmp_path / "one.step")] == [shape.name]

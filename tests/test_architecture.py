@@ -21,11 +21,13 @@ HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPy
 
 # What users import from cadpanel itself. A name that leaves this list breaks someone's script.
 PUBLIC = {
-    *("read", "fit", "compare", "deliver", "verify"),
+    *("read", "inspect", "fit", "compare", "deliver", "verify"),
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step"),
-    *("FitSettings", "Weights", "FitResult", "Measures", "Verification"),
-    *("Reference", "PanelReference", "Seam", "PanelShape", "PlanePatch", "ConePatch"),
-    *("CadpanelError", "ReferenceFileError", "PanelError", "SettingsError", "DeliveryError", "ProofError"),
+    *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
+    *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch"),
+    *("Feature", "Plane", "Cone", "Cylinder"),
+    *("fit_plane", "fit_cylinder", "fit_cone", "PlaneFit", "CylinderFit", "ConeFit"),
+    *("CadpanelError", "ReferenceFileError", "PanelError", "SettingsError", "FitError", "DeliveryError", "ProofError"),
 }
 
 

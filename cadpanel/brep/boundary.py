@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,11 +11,11 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_Line
-from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
+from cadpanel.brep.surface_batch import Indices, SurfaceBatch, kernel_values
 from cadpanel.reference.polyline import cross, norm, unit
 
 Array = NDArray[np.float64]
@@ -52,20 +53,19 @@ class _Samples(NamedTuple):
 
 
 def evaluate(surface: BRepAdaptor_Surface, parameters: Array) -> tuple[Array, Array, Array]:
-    """Return the points and the two first derivatives, each (..., 3) in mm, at the (..., 2) parameters."""
-    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-    numbers: list[float] = []
-    for u, v in parameters.reshape(-1, 2).tolist():
-        surface.D1(u, v, point, along_u, along_v)
-        numbers += point.Coord()
-        numbers += along_u.Coord()
-        numbers += along_v.Coord()
-    values = np.array(numbers, dtype=np.float64).reshape(*parameters.shape[:-1], 3, 3)
+    """Return the points and the two first derivatives, each (..., 3) in mm, at (..., 2) parameters of one surface."""
+    values = kernel_values(surface, parameters.reshape(-1, 2)).reshape(*parameters.shape[:-1], 3, 3)
     return values[..., 0, :], values[..., 1, :], values[..., 2, :]
 
 
-def unit_normals(along_u: Array, along_v: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return the normals of a face from its derivatives, each (..., 3).
+def unit_normals(along_u: Array, along_v: Array, faces: Indices | int = 0) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return the normals of faces from their derivatives.
+
+    Args:
+        along_u: (..., 3) first derivatives by u.
+        along_v: (..., 3) first derivatives by v.
+        faces: (...) the face of each point, where there are several; no direction is trusted where it is small
+            against its mean over the face.
 
     Returns:
         (..., 3) unit normals along Su x Sv, (...,) the length |Su x Sv|, and (...,) whether each normal is well
@@ -74,56 +74,74 @@ def unit_normals(along_u: Array, along_v: Array) -> tuple[Array, Array, NDArray[
     normals = cross(along_u, along_v)
     sizes = norm(normals)
     lengths_u, lengths_v = norm(along_u), norm(along_v)
-    scale = np.maximum(lengths_u * lengths_v, lengths_u.sum() * lengths_v.sum() / sizes.size**2)
+    owners = np.broadcast_to(faces, sizes.shape).ravel()
+    counts = np.maximum(np.bincount(owners), 1)
+    mean_u, mean_v = (np.bincount(owners, lengths.ravel()) / counts for lengths in (lengths_u, lengths_v))
+    scale = np.maximum(lengths_u * lengths_v, (mean_u * mean_v)[owners].reshape(sizes.shape))
     defined = sizes > DEGENERATE * scale
     return normals * np.divide(1.0, sizes, out=np.zeros_like(sizes), where=defined)[..., None], sizes, defined
 
 
-def sample_edges(face: TopoDS_Face, surface: BRepAdaptor_Surface, middle: Array, side: float) -> tuple[Edge, ...]:
-    """Return the face's boundary edges; the closing edges of a closed surface are none.
+def sample_edges(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, bounds: Array, sides: Array) -> list[list[Edge]]:
+    """Return the boundary edges of each face; the closing edges of closed surfaces are none.
 
     Args:
-        face: the face.
-        surface: the face's surface.
-        middle: (2,) parameters of a point inside, towards which degenerate normals are looked for.
-        side: -1 where the face is reversed against its surface, else 1.
+        faces: F faces.
+        surfaces: their surfaces.
+        bounds: (F, 2, 2) least and largest parameter of each face, by u and v; degenerate normals are looked for
+            towards the middle.
+        sides: (F,) -1 where a face is reversed against its surface, else 1.
     """
-    curves = []
+    found = [(index, curve) for index, face in enumerate(faces) for curve in _curves(face)]
+    edges: list[list[Edge]] = [[] for _ in faces]
+    if not found:
+        return edges
+    owners, curves = np.array([index for index, _ in found]), [curve for _, curve in found]
+    parameters = _curve_values(curves, np.array([_even_positions(curve) for curve in curves]))
+    points, along_u, along_v = surfaces.evaluate(owners[:, None], parameters)
+    normals, _, defined = unit_normals(along_u, along_v, owners[:, None])
+    middles = bounds.mean(axis=2)
+    whole, (coarse, uneven) = np.asarray(defined.all(axis=1)), _faults(points)
+    faulty = np.asarray(coarse | uneven)
+    signed = sides[owners, None, None] * normals
+    for index, owner in enumerate(owners.tolist()):
+        if whole[index] and not faulty[index]:
+            edge = Edge(points[index], signed[index], parameters[index])
+        else:
+            samples = _Samples(points[index], normals[index], defined[index], parameters[index])
+            if faulty[index]:
+                samples = _refined(curves[index], surfaces, owner)
+            edge = _edge(samples, surfaces, owner, middles[owner], sides[owner])
+        edges[owner].append(edge)
+    return edges
+
+
+def _curves(face: TopoDS_Face) -> Iterator[BRepAdaptor_Curve2d]:
+    """The edges of a face as curves in its parameter plane."""
     explorer = TopExp_Explorer(face, TopAbs_EDGE)
     while explorer.More():
         edge = TopoDS.Edge_s(explorer.Current())
         if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
-            curves.append(BRepAdaptor_Curve2d(edge, face))
+            yield BRepAdaptor_Curve2d(edge, face)
         explorer.Next()
-    if not curves:
-        return ()
-    positions = np.array([_even_positions(curve) for curve in curves])
-    parameters = np.array([_curve_values(curve, places) for curve, places in zip(curves, positions, strict=True)])
-    points, along_u, along_v = evaluate(surface, parameters)
-    normals, _, defined = unit_normals(along_u, along_v)
-    faulty = np.logical_or(*_faults(points))
-    edges = []
-    for index, curve in enumerate(curves):
-        samples = _Samples(points[index], normals[index], defined[index], parameters[index])
-        edges.append(_edge(_refined(curve, surface) if faulty[index] else samples, surface, middle, side))
-    return tuple(edges)
 
 
-def _edge(samples: _Samples, surface: BRepAdaptor_Surface, middle: Array, side: float) -> Edge:
+def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, side: float) -> Edge:
     """Make an edge of its samples, with the normals that the surface does not define taken from next to them."""
     normals = samples.normals
     if not samples.defined.all():
-        _, along_u, along_v = evaluate(surface, samples.parameters + NUDGE * (middle - samples.parameters))
+        nudged = samples.parameters + NUDGE * (middle - samples.parameters)
+        _, along_u, along_v = surfaces.evaluate(np.array(face), nudged)
         normals = np.where(samples.defined[:, None], normals, unit(cross(along_u, along_v)))
     return Edge(samples.points, side * normals, samples.parameters)
 
 
-def _refined(curve: BRepAdaptor_Curve2d, surface: BRepAdaptor_Surface) -> _Samples:
+def _refined(curve: BRepAdaptor_Curve2d, surfaces: SurfaceBatch, face: int) -> _Samples:
     """Sample one edge anew at even spacing, the finer the more it turns."""
     positions = _even_positions(curve)
     for _ in range(PASSES):
-        parameters = _curve_values(curve, positions)
-        points, along_u, along_v = evaluate(surface, parameters)
+        parameters = _curve_values([curve], positions[None])[0]
+        points, along_u, along_v = surfaces.evaluate(np.array(face), parameters)
         coarse, uneven = _faults(points)
         if not (coarse or uneven):
             break
@@ -151,11 +169,18 @@ def _even_positions(curve: BRepAdaptor_Curve2d) -> Array:
     return np.asarray(first + EVEN_PARTS * (last - first))
 
 
-def _curve_values(curve: BRepAdaptor_Curve2d, positions: Array) -> Array:
-    """Return the (q, 2) surface parameters at the (q,) positions of an edge's curve in the parameter plane."""
-    if curve.GetType() == GeomAbs_Line:
-        line = curve.Line()
-        origin, direction = np.array(line.Location().Coord()), np.array(line.Direction().Coord())
-        straight: Array = origin + positions[:, None] * direction
-        return straight
-    return np.array([curve.Value(position).Coord() for position in positions.tolist()], dtype=np.float64)
+def _curve_values(curves: Sequence[BRepAdaptor_Curve2d], positions: Array) -> Array:
+    """Return the (e, q, 2) surface parameters at the (e, q) positions of e edges' curves in the parameter plane."""
+    values = np.empty((*positions.shape, 2))
+    straight, lines = [], []
+    for index, curve in enumerate(curves):
+        if curve.GetType() == GeomAbs_Line:
+            line = curve.Line()
+            straight.append(index)
+            lines.append((line.Location().Coord(), line.Direction().Coord()))
+        else:
+            values[index] = [curve.Value(position).Coord() for position in positions[index].tolist()]
+    if straight:
+        origins, directions = np.array(lines).transpose(1, 0, 2)[:, :, None]
+        values[straight] = origins + positions[straight, :, None] * directions
+    return values

@@ -16,9 +16,9 @@ from typing import Literal
 import numpy as np
 
 from cadpanel.brep.inspection import FACE_KINDS, ShapeFacts
-from cadpanel.brep.inspection_pool import inspect_files
+from cadpanel.brep.inspection_pool import Helper, inspect_files
 from cadpanel.geometry.curve_gap import CurvePieces, hausdorff_distances
-from cadpanel.geometry.shape import Array
+from cadpanel.geometry.shape import Array, edge_corners
 from cadpanel.geometry.tangency import edge_angles
 
 TANGENCY_LIMIT = 1e-9
@@ -43,8 +43,10 @@ class ExpectedPanel:
         name: its product name in both files.
         volume: analytic volume of the sheet, mm3.
         kinds: kinds of its patches in the order of the walk, as built.
-        corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, mm.
+        corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
         far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
+
+    Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
 
     name: str
@@ -56,16 +58,16 @@ class ExpectedPanel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedSeam:
-    """Two ends that face each other.
+    """Two edges that face each other.
 
     Attributes:
         panels: names of the two panels.
-        ends: which end of each, 0 or 1.
+        edges: which edge of each, for example "end 1" or "side 0".
         gap: the gap along the whole seam that the report states, mm; None to measure only.
     """
 
     panels: tuple[str, str]
-    ends: tuple[int, int]
+    edges: tuple[str, str]
     gap: float | None = None
 
 
@@ -110,13 +112,14 @@ def certify(
     skins_step: str | os.PathLike[str],
     panels: Sequence[ExpectedPanel],
     seams: Sequence[ExpectedSeam] = (),
+    helper: Helper | None = None,
 ) -> Certificate:
-    """Read both files and prove them against the expected numbers.
+    """Read both files and prove them against the expected numbers, with the help of an interpreter that runs already.
 
     Raises:
         DeliveryError: if a file cannot be read at all.
     """
-    solids, skins = inspect_files(panels_step, skins_step)
+    solids, skins = inspect_files(panels_step, skins_step, helper)
     failures: list[str] = []
     names_kept = _names_kept("solids", solids, panels, failures) & _names_kept("skins", skins, panels, failures)
     solid_of, skin_of = ({facts.name: facts for facts in found} for found in (solids, skins))
@@ -176,7 +179,7 @@ def _tangency(found: Sequence[ShapeFacts], label: str, failures: list[str]) -> f
 
 def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
     """Everything about one solid but its tangency; returns the relative error of its volume."""
-    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *4 * ("plane",)))
+    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *_walls(panel) * ("plane",)))
     smooth = int((edge_angles(facts.straight_edges, facts.edge_surfaces) < FOLD_ANGLE).sum())
     error = abs(facts.volume / panel.volume - 1.0)
     problems = {
@@ -193,11 +196,17 @@ def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -
     return error
 
 
+def _walls(panel: ExpectedPanel) -> int:
+    """Walls of the sheet: two ends and two sides, or one at each edge of a polygon."""
+    return 4 if len(panel.corners) == 2 else panel.corners.shape[1]
+
+
 def _check_far_face(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> None:
-    """Four corners of the solid must lie where the thickness and the skin's side put the far face of each flange."""
+    """Corners of the solid must lie where the thickness and the skin's side put the far face of each flat patch."""
+    corners = _walls(panel)  # a flat patch of a chain has four, a polygon one at each wall
     for index, (point, normal) in enumerate(panel.far_planes, start=1):
         off = np.sort(np.abs((facts.vertices - point) @ normal))
-        if not (len(off) >= 4 and off[3] <= POSITION_LIMIT):
+        if not (len(off) >= corners and off[corners - 1] <= POSITION_LIMIT):
             failures.append(
                 f"Panel '{panel.name}': the far face of its solid does not lie where the thickness and the skin's side "
                 f"put it (flat patch {index})."
@@ -252,11 +261,11 @@ def _seam_gaps(
     measured: list[int] = []
     for index, seam in enumerate(seams):
         found = [
-            _end_curve(skin_of[name], corners[name], end) if name in skin_of and name in corners else None
-            for name, end in zip(seam.panels, seam.ends, strict=True)
+            _edge_curve(skin_of[name], corners[name], edge) if name in skin_of and name in corners else None
+            for name, edge in zip(seam.panels, seam.edges, strict=True)
         ]
         if found[0] is None or found[1] is None:
-            failures.append(f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': an end cannot be found on the skins.")
+            failures.append(f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': an edge cannot be found on the skins.")
             continue
         sides.append((found[0], found[1]))
         measured.append(index)
@@ -271,12 +280,16 @@ def _seam_gaps(
     return gaps
 
 
-def _end_curve(skin: ShapeFacts, corners: Array, end: int) -> CurvePieces | None:
-    """The boundary pieces whose two vertices are both nearest to corners of `end`; None unless they are k."""
+def _edge_curve(skin: ShapeFacts, corners: Array, edge: str) -> CurvePieces | None:
+    """The boundary pieces whose two vertices are both nearest to corners of the edge; None unless they make it up."""
+    try:
+        own = edge_corners(corners, edge)
+    except ValueError:
+        return None
     flat = corners.reshape(-1, 3)
-    nearest = np.linalg.norm(skin.border_ends[:, :, None] - flat, axis=-1).argmin(axis=-1)
-    chosen = (nearest // corners.shape[1] == end).all(axis=1)
-    if int(chosen.sum()) != corners.shape[1] - 1:
+    nearest = flat[np.linalg.norm(skin.border_ends[:, :, None] - flat, axis=-1).argmin(axis=-1)]
+    chosen = (nearest[:, :, None] == own).all(axis=-1).any(axis=-1).all(axis=1)
+    if int(chosen.sum()) != len(own) - 1:
         return None
     border = skin.border
     return CurvePieces(

@@ -11,7 +11,7 @@ from OCP.Geom2d import Geom2d_Curve
 from OCP.gp import gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
 
 from cadpanel.brep import kernel
 from cadpanel.geometry.frames import cross
@@ -73,3 +73,12 @@ def face_on(surface: Geom_Surface, agrees: bool, loop: Sequence[TopoDS_Shape]) -
     _BUILDER.MakeFace(face, surface, kernel.TOLERANCE)
     _BUILDER.Add(face, wire if agrees else wire.Reversed())
     return face if agrees else TopoDS.Face_s(face.Reversed())
+
+
+def shell_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Shell:
+    """A shell of faces that already share their edges."""
+    shell = TopoDS_Shell()
+    _BUILDER.MakeShell(shell)
+    for face in faces:
+        _BUILDER.Add(shell, face)
+    return shell

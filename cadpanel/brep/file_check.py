@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cadpanel.errors import ReferenceFileError
 
-READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242, usually .step or .stp)"
+READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242), IGES, .brep and Rhino .3dm"
 # The first and last part of a file in which its beginning and end are looked for.
 MARGIN_BYTES = 4096
 START = b"ISO-10303-21"
@@ -19,9 +19,6 @@ END = b"END-ISO-10303-21"
 
 # First bytes of what people hand over by mistake, and what to call it.
 OTHER_FORMATS = (
-    (re.compile(rb"\s*3D Geometry File Format"), "a Rhino 3dm file"),
-    (re.compile(rb"[^\r\n]{72}S\s{0,6}[01]"), "an IGES file"),
-    (re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology|Open CASCADE Topology)"), "an OCCT brep file"),
     (re.compile(rb"\s*solid\b"), "an STL file"),
     (re.compile(rb"AC10\d\d"), "a DWG drawing"),
     (re.compile(rb"\s*0\r?\nSECTION"), "a DXF drawing"),
@@ -37,37 +34,43 @@ LONG_POWER = re.compile(rb"e\+?\d\d\d")
 INSTANCE = re.compile(rb"#(\d+)\s*=")
 
 
-def check_step_file(path: Path) -> None:
-    """Refuse a file that is missing, is no STEP file, breaks off, or holds numbers that are none.
+def contents(path: Path, most: int = -1) -> bytes:
+    """The bytes of a file, or its first ones.
 
     Raises:
-        ReferenceFileError: the first of these that is found, naming the file.
+        ReferenceFileError: there is no such file, it cannot be read, or it is empty.
     """
     if path.is_dir():
-        raise ReferenceFileError(f"'{path}' is a folder: give the STEP file of the reference in it.")
+        raise ReferenceFileError(f"'{path}' is a folder: give the file of the reference in it.")
     try:
-        text = path.read_bytes()
+        with path.open("rb") as file:
+            text = file.read(most)
     except FileNotFoundError:
         raise ReferenceFileError(f"'{path}' does not exist: check the name and the folder.") from None
     except OSError as error:
         raise ReferenceFileError(f"'{path}' cannot be read ({error.strerror}): check its permissions.") from error
     if not text.strip():
         raise ReferenceFileError(f"'{path.name}' is empty: export the reference again.")
-    if START not in text[:MARGIN_BYTES]:
-        raise ReferenceFileError(f"'{path.name}' is {_format_of(text)}: {READABLE}; export the reference as STEP.")
+    return text
+
+
+def refuse_format(path: Path, head: bytes) -> ReferenceFileError:
+    """What to say of a file in a format that is not read, by its first bytes."""
+    called = next((name for signature, name in OTHER_FORMATS if signature.match(head)), "of no format that it knows")
+    return ReferenceFileError(f"'{path.name}' is {called}: {READABLE}; export the reference as STEP.")
+
+
+def check_step_text(path: Path, text: bytes) -> None:
+    """Refuse a STEP file that breaks off, or holds numbers that are none.
+
+    Raises:
+        ReferenceFileError: the first of these that is found, naming the file.
+    """
     if END not in text[-MARGIN_BYTES:]:
         raise ReferenceFileError(
             f"'{path.name}' breaks off before its end ({END.decode()} is missing): copy or export it again."
         )
     _check_numbers(path.name, text)
-
-
-def _format_of(text: bytes) -> str:
-    """Name the format that the file's first bytes speak for."""
-    for signature, name in OTHER_FORMATS:
-        if signature.match(text[:MARGIN_BYTES]):
-            return name
-    return "not a STEP file"
 
 
 def _check_numbers(name: str, text: bytes) -> None:

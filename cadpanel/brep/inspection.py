@@ -189,4 +189,4 @@ def _pieces(rows: list[list[list[float]]]) -> CurvePieces:
 
 
 def _xyz(triple: gp_Pnt | gp_Dir) -> list[float]:
-    return [triple.X(), triple.Y(), triple.Z()]
+    return list(triple.Coord())

@@ -65,8 +65,21 @@ def read_products(path: Path) -> tuple[NamedShape, ...]:
     silence_kernel()
     document = TDocStd_Document(TCollection_ExtendedString("cadpanel"))
     XCAFApp_Application.GetApplication_s().InitDocument(document)
+    reader = STEPCAFControl_Reader()
+    # Only names matter here; leaving out the rest makes the reader as fast as one that knows no names at all.
+    for leave_out in (
+        reader.SetColorMode,
+        reader.SetLayerMode,
+        reader.SetPropsMode,
+        reader.SetMetaMode,
+        reader.SetGDTMode,
+        reader.SetMatMode,
+        reader.SetViewMode,
+        reader.SetSHUOMode,
+    ):
+        leave_out(False)
     try:
-        _transfer(path, document)
+        transfer(path, document, reader)
         labels = TDF_LabelSequence()
         XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
         roots = [labels.Value(index) for index in range(1, labels.Length() + 1)]
@@ -84,21 +97,12 @@ def read_products(path: Path) -> tuple[NamedShape, ...]:
     )
 
 
-def _transfer(path: Path, document: TDocStd_Document) -> None:
-    """Read the file into the document and refuse what was read only in part."""
-    reader = STEPCAFControl_Reader()
-    # Only names matter here; leaving out the rest makes the reader as fast as one that knows no names at all.
-    for leave_out in (
-        reader.SetColorMode,
-        reader.SetLayerMode,
-        reader.SetPropsMode,
-        reader.SetMetaMode,
-        reader.SetGDTMode,
-        reader.SetMatMode,
-        reader.SetViewMode,
-        reader.SetSHUOMode,
-    ):
-        leave_out(False)
+def transfer(path: Path, document: TDocStd_Document, reader: STEPCAFControl_Reader) -> None:
+    """Read a STEP file into a document and refuse what was read only in part.
+
+    Raises:
+        ReferenceFileError: naming what the kernel could not read.
+    """
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise ReferenceFileError(f"'{path.name}' is damaged: the CAD kernel cannot read it; export it again.")
     fault = damage(reader.Reader().StepModel())
@@ -124,7 +128,7 @@ def _first_fail(check: Interface_Check) -> str:
 
 def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
     """Return the panels below one label, placed by `location`."""
-    product, instance = TDF_Label(), _name(label)
+    product, instance = TDF_Label(), label_name(label)
     if instance.isdecimal():  # a number is what programs call a use of a product when the user does not
         instance = ""
     if XCAFDoc_ShapeTool.IsReference_s(label):
@@ -132,7 +136,7 @@ def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
         XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
     else:
         product = label
-    name = _name(product)
+    name = label_name(product)
     components = TDF_LabelSequence()
     if XCAFDoc_ShapeTool.IsAssembly_s(product):
         XCAFDoc_ShapeTool.GetComponents_s(product, components)
@@ -145,21 +149,22 @@ def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
 
 def _is_sheet_in_pieces(assembly: TDF_Label, components: TDF_LabelSequence) -> bool:
     """Tell whether an assembly only holds the nameless single faces of one panel."""
-    own_name = _name(assembly)
+    own_name = label_name(assembly)
     for index in range(1, components.Length() + 1):
         product = TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(components.Value(index), product)
-        if _name(product) not in ("", own_name) or XCAFDoc_ShapeTool.IsAssembly_s(product):
+        if label_name(product) not in ("", own_name) or XCAFDoc_ShapeTool.IsAssembly_s(product):
             return False
         if not _is_one_face(XCAFDoc_ShapeTool.GetShape_s(product)):
             return False
     return True
 
 
-def _name(label: TDF_Label) -> str:
+def label_name(label: TDF_Label) -> str:
     """Return a product's name, empty where it is missing or made up by the writing program."""
+    # Asked for first: looking for an attribute that is not there may crash the kernel's binding.
     attribute = TDataStd_Name()
-    if not label.FindAttribute(TDataStd_Name.GetID_s(), attribute):
+    if not (label.IsAttribute(TDataStd_Name.GetID_s()) and label.FindAttribute(TDataStd_Name.GetID_s(), attribute)):
         return ""
     name: str = attribute.Get().ToExtString().strip()
     return "" if GENERIC_NAME.fullmatch(name) else name

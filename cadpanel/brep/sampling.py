@@ -1,18 +1,19 @@
-"""From the faces of one panel to samples: exact surface points and normals, spread evenly by area.
+"""From the faces of panels to samples: exact surface points and normals, spread evenly by area.
 
 Each face gets a grid in its parameters whose lines are spaced evenly along the surface, with a sample in the middle of
-every cell. A trimmed face keeps the samples that lie inside.
+every cell. A trimmed face keeps the samples that lie inside. The faces of all panels are worked on together.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepGProp import BRepGProp
-from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.gp import gp_Pnt2d
 from OCP.GProp import GProp_GProps
@@ -20,7 +21,8 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
-from cadpanel.brep.boundary import Edge, evaluate, sample_edges, unit_normals
+from cadpanel.brep.boundary import Edge, sample_edges, unit_normals
+from cadpanel.brep.surface_batch import Indices, SurfaceBatch
 from cadpanel.reference.model import FaceSamples
 from cadpanel.reference.polyline import cross, norm
 
@@ -43,30 +45,31 @@ LARGEST_GRID = 40
 
 
 @dataclass(frozen=True, slots=True)
-class _MeasuredFace:
-    """A face with what is needed to lay a grid on it.
+class _MeasuredFaces:
+    """F faces with what is needed to lay a grid on each.
 
     Attributes:
-        face: the kernel's face.
-        surface: its surface, placed.
-        side: -1 where the face is reversed against its surface, else 1.
-        bounds: (2, 2) least and largest parameter, by u and v.
-        reach: two times (k + 1,): the length walked along u (and v) on the surface up to each of k even steps, mm.
-        edges: its boundary.
-        trimmed: whether the boundary cuts into the parameter range.
-        area: mm^2.
-        full_area: the area of the whole parameter range, mm^2.
+        faces: the kernel's faces.
+        surfaces: their surfaces.
+        sides: (F,) -1 where a face is reversed against its surface, else 1.
+        bounds: (F, 2, 2) least and largest parameter, by u and v.
+        reach: two times (F, FINE_MEASURING_GRID + 1): the length walked along u (and v) on the surface up to each of
+            as many even steps, mm.
+        edges: their boundaries.
+        trimmed: (F,) whether the boundary cuts into the parameter range.
+        areas: (F,) mm^2.
+        full_areas: (F,) the areas of the whole parameter ranges, mm^2.
     """
 
-    face: TopoDS_Face
-    surface: BRepAdaptor_Surface
-    side: float
+    faces: list[TopoDS_Face]
+    surfaces: SurfaceBatch
+    sides: Array
     bounds: Array
     reach: tuple[Array, Array]
-    edges: tuple[Edge, ...]
-    trimmed: bool
-    area: float
-    full_area: float
+    edges: list[list[Edge]]
+    trimmed: NDArray[np.bool_]
+    areas: Array
+    full_areas: Array
 
 
 def sample_faces(shape: TopoDS_Shape) -> tuple[FaceSamples, ...]:
@@ -74,57 +77,104 @@ def sample_faces(shape: TopoDS_Shape) -> tuple[FaceSamples, ...]:
 
     A face without area has no samples; what to say about it is left to the caller.
     """
+    (samples,) = sample_panels([shape])
+    return samples
+
+
+def sample_panels(shapes: Sequence[TopoDS_Shape]) -> list[tuple[FaceSamples, ...]]:
+    """Return the same for each of several panels, worked out together."""
+    faces = [(panel, face) for panel, shape in enumerate(shapes) for face in _faces(shape)]
+    found: list[list[FaceSamples]] = [[] for _ in shapes]
+    if faces:
+        panels = np.array([panel for panel, _ in faces])
+        measured = _measure([face for _, face in faces])
+        whole = np.bincount(panels, measured.areas)[panels]
+        parts = np.divide(measured.areas, whole, out=np.zeros(len(faces)), where=whole > 0.0)
+        for (panel, _), samples in zip(faces, _sample(measured, SAMPLES_PER_PANEL * parts), strict=True):
+            found[panel].append(samples)
+    return [tuple(samples) for samples in found]
+
+
+def _faces(shape: TopoDS_Shape) -> list[TopoDS_Face]:
     faces = []
     explorer = TopExp_Explorer(shape, TopAbs_FACE)
     while explorer.More():
-        faces.append(_measure(TopoDS.Face_s(explorer.Current())))
+        faces.append(TopoDS.Face_s(explorer.Current()))
         explorer.Next()
-    total = sum(face.area for face in faces)
-    return tuple(_sample(face, SAMPLES_PER_PANEL * face.area / total if total > 0.0 else 0.0) for face in faces)
+    return faces
 
 
-def _measure(face: TopoDS_Face) -> _MeasuredFace:
-    """Measure one face on a coarse grid."""
-    surface = BRepAdaptor_Surface(face)
-    side = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
-    u_min, u_max, v_min, v_max = BRepTools.UVBounds_s(face)
-    bounds = np.array([[u_min, u_max], [v_min, v_max]])
-    edges = sample_edges(face, surface, bounds.mean(axis=1), side)
-    reach, full_area = _measure_range(surface, bounds, MEASURING_GRID)
-    if any(steps.max() > SPEED_RATIO * steps.min() for steps in map(np.diff, reach)):
-        reach, full_area = _measure_range(surface, bounds, FINE_MEASURING_GRID)
-    trimmed = _is_trimmed(edges, bounds)
-    return _MeasuredFace(
-        face=face,
-        surface=surface,
-        side=side,
+def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
+    """Measure faces on a coarse grid, and on a fine one where that does not do."""
+    adaptors = [BRepAdaptor_Surface(face) for face in faces]
+    surfaces = SurfaceBatch(adaptors)
+    sides = np.array([-1.0 if face.Orientation() == TopAbs_REVERSED else 1.0 for face in faces])
+    bounds = np.array(
+        [[[on.FirstUParameter(), on.LastUParameter()], [on.FirstVParameter(), on.LastVParameter()]] for on in adaptors]
+    )
+    edges = sample_edges(faces, surfaces, bounds, sides)
+    everyone = np.arange(len(faces))
+    coarse = _measure_ranges(surfaces, everyone, bounds, MEASURING_GRID)
+    uneven = np.zeros(len(faces), dtype=bool)
+    for speeds in coarse.speeds:
+        uneven |= speeds.max(axis=1) > SPEED_RATIO * speeds.min(axis=1)
+    fine = _measure_ranges(surfaces, everyone[uneven], bounds[uneven], FINE_MEASURING_GRID)
+    full_areas = coarse.areas
+    full_areas[uneven] = fine.areas
+    trimmed = _are_trimmed(edges, bounds)
+    areas = full_areas.copy()
+    for face in np.flatnonzero(trimmed).tolist():
+        areas[face] = _exact_area(faces[face])
+    return _MeasuredFaces(
+        faces=faces,
+        surfaces=surfaces,
+        sides=sides,
         bounds=bounds,
-        reach=reach,
+        reach=(_reach(coarse, fine, uneven, 0), _reach(coarse, fine, uneven, 1)),
         edges=edges,
         trimmed=trimmed,
-        area=_exact_area(face) if trimmed else full_area,
-        full_area=full_area,
+        areas=areas,
+        full_areas=full_areas,
     )
 
 
-def _measure_range(surface: BRepAdaptor_Surface, bounds: Array, lines: int) -> tuple[tuple[Array, Array], float]:
-    """Return the reach along u and v, as in `_MeasuredFace`, and the area of a parameter range."""
+class _Range(NamedTuple):
+    """Two times (F, k) lengths of the steps along u (and v) on the surface, mm; and (F,) areas, mm^2."""
+
+    speeds: tuple[Array, Array]
+    areas: Array
+
+
+def _measure_ranges(surfaces: SurfaceBatch, faces: Indices, bounds: Array, lines: int) -> _Range:
+    """Measure whole parameter ranges by the middles of `lines` even steps each way."""
     middles = (np.arange(lines) + 0.5) / lines
-    _, along_u, along_v = evaluate(surface, _grid(bounds, middles, middles))
-    steps = (bounds[:, 1] - bounds[:, 0]) / lines
-    reach_u = np.concatenate([[0.0], np.cumsum(steps[0] * norm(along_u).reshape(lines, lines).mean(axis=1))])
-    reach_v = np.concatenate([[0.0], np.cumsum(steps[1] * norm(along_v).reshape(lines, lines).mean(axis=0))])
-    return (reach_u, reach_v), float(norm(cross(along_u, along_v)).sum() * steps.prod())
+    parts = np.stack([np.repeat(middles, lines), np.tile(middles, lines)], axis=-1)
+    spans = bounds[:, :, 1] - bounds[:, :, 0]
+    _, along_u, along_v = surfaces.evaluate(faces[:, None], bounds[:, None, :, 0] + parts * spans[:, None])
+    steps = spans / lines
+    speeds_u = steps[:, :1] * norm(along_u).reshape(-1, lines, lines).mean(axis=2)
+    speeds_v = steps[:, 1:] * norm(along_v).reshape(-1, lines, lines).mean(axis=1)
+    return _Range((speeds_u, speeds_v), norm(cross(along_u, along_v)).sum(axis=1) * steps.prod(axis=1))
 
 
-def _is_trimmed(edges: tuple[Edge, ...], bounds: Array) -> bool:
-    """Tell whether any part of the boundary runs inside the parameter range instead of along its border."""
-    if not edges:
-        return False
-    parameters = np.concatenate([edge.parameters for edge in edges])
-    margin = BORDER * (bounds[:, 1] - bounds[:, 0])
-    on_border = np.abs(parameters[:, :, None] - bounds[None]) <= margin[None, :, None]
-    return not bool(on_border.any(axis=(1, 2)).all())
+def _reach(coarse: _Range, fine: _Range, uneven: NDArray[np.bool_], way: int) -> Array:
+    """(F, FINE_MEASURING_GRID + 1) lengths walked; the steps of the coarse grid are cut into equal parts."""
+    parts = FINE_MEASURING_GRID // MEASURING_GRID
+    steps = np.repeat(coarse.speeds[way] / parts, parts, axis=1)
+    steps[uneven] = fine.speeds[way]
+    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+
+
+def _are_trimmed(edges: list[list[Edge]], bounds: Array) -> NDArray[np.bool_]:
+    """Tell for each face whether any part of its boundary runs inside the parameter range, not along its border."""
+    trimmed = np.zeros(len(edges), dtype=bool)
+    owners = np.array([face for face, own in enumerate(edges) for edge in own for _ in edge.parameters], dtype=np.intp)
+    if len(owners):
+        parameters = np.concatenate([edge.parameters for own in edges for edge in own])
+        margin = BORDER * (bounds[:, :, 1] - bounds[:, :, 0])
+        on_border = np.abs(parameters[:, :, None] - bounds[owners]) <= margin[owners][:, :, None]
+        trimmed[owners[~on_border.any(axis=(1, 2))]] = True
+    return trimmed
 
 
 def _exact_area(face: TopoDS_Face) -> float:
@@ -134,53 +184,74 @@ def _exact_area(face: TopoDS_Face) -> float:
     return abs(float(properties.Mass()))
 
 
-def _sample(face: _MeasuredFace, wanted: float) -> FaceSamples:
-    """Sample one face with about `wanted` points."""
-    wanted = max(wanted, FEWEST_SAMPLES_PER_FACE)
-    if face.trimmed and face.area > 0.0:
-        wanted *= min(max(face.full_area / face.area, 1.0), LARGEST_GRID)
-    length_u, length_v = face.reach[0][-1], face.reach[1][-1]
-    aspect = length_u / length_v if length_u > 0.0 and length_v > 0.0 else 1.0
-    count_u = max(2, round(np.sqrt(wanted * aspect)))
-    count_v = max(2, round(wanted / count_u))
-    (middles_u, widths_u), (middles_v, widths_v) = (
-        _even_cells(reach, count) for reach, count in zip(face.reach, (count_u, count_v), strict=True)
-    )
-    parameters = _grid(face.bounds, middles_u, middles_v)
-    points, along_u, along_v = evaluate(face.surface, parameters)
-    cells = np.outer(widths_u, widths_v).ravel() * (face.bounds[:, 1] - face.bounds[:, 0]).prod()
-    normals, sizes, keep = unit_normals(along_u, along_v)
-    weights = cells * sizes
-    if face.trimmed:
-        keep &= _inside(face, parameters)
-        covered = weights[keep].sum()
-        weights *= face.area / covered if covered > 0.0 else 1.0
-    return FaceSamples(
-        points=points[keep],
-        normals=face.side * normals[keep],
-        weights=weights[keep],
-        edges=tuple(edge.points for edge in face.edges),
-        edge_normals=tuple(edge.normals for edge in face.edges),
-    )
+def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
+    """Sample each face with about `wanted` (F,) points."""
+    counts = _grid_sizes(measured, wanted)
+    sizes = counts.prod(axis=1)
+    owners = np.repeat(np.arange(len(sizes)), sizes)
+    place = np.arange(len(owners)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    rank_u, rank_v = np.divmod(place, counts[owners, 1])
+    middles, widths = np.empty((len(owners), 2)), np.empty((len(owners), 2))
+    for way, rank in enumerate((rank_u, rank_v)):
+        low, high = (_even_border(measured.reach[way], owners, (rank + k) / counts[owners, way]) for k in range(2))
+        middles[:, way], widths[:, way] = 0.5 * (low + high), high - low
+    spans = measured.bounds[:, :, 1] - measured.bounds[:, :, 0]
+    parameters = measured.bounds[owners, :, 0] + middles * spans[owners]
+    points, along_u, along_v = measured.surfaces.evaluate(owners, parameters)
+    normals, lengths, keep = unit_normals(along_u, along_v, owners)
+    normals *= measured.sides[owners, None]
+    weights = widths.prod(axis=1) * spans.prod(axis=1)[owners] * lengths
+    found = []
+    for face, (stop, size) in enumerate(zip(np.cumsum(sizes).tolist(), sizes.tolist(), strict=True)):
+        own = slice(stop - size, stop)
+        if measured.trimmed[face]:
+            keep[own] &= _inside(measured, face, parameters[own])
+            covered = weights[own][keep[own]].sum()
+            weights[own] *= measured.areas[face] / covered if covered > 0.0 else 1.0
+        kept = own if keep[own].all() else np.flatnonzero(keep[own]) + own.start
+        found.append(
+            FaceSamples(
+                points=points[kept],
+                normals=normals[kept],
+                weights=weights[kept],
+                edges=tuple(edge.points for edge in measured.edges[face]),
+                edge_normals=tuple(edge.normals for edge in measured.edges[face]),
+            )
+        )
+    return found
 
 
-def _grid(bounds: Array, parts_u: Array, parts_v: Array) -> Array:
-    """Return the (k_u * k_v, 2) parameters of a grid given by parts (0 to 1) of the range, v running fastest."""
-    u = bounds[0, 0] + parts_u * (bounds[0, 1] - bounds[0, 0])
-    v = bounds[1, 0] + parts_v * (bounds[1, 1] - bounds[1, 0])
-    return np.column_stack([np.repeat(u, len(v)), np.tile(v, len(u))])
+def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> NDArray[np.intp]:
+    """(F, 2) cells by u and v for about `wanted` (F,) samples of each face."""
+    wanted = np.maximum(wanted, FEWEST_SAMPLES_PER_FACE)
+    cut = measured.trimmed & (measured.areas > 0.0)
+    excess = np.divide(measured.full_areas, measured.areas, out=np.ones_like(wanted), where=cut)
+    wanted = wanted * np.clip(excess, 1.0, LARGEST_GRID)
+    length_u, length_v = (reach[:, -1] for reach in measured.reach)
+    aspect = np.divide(length_u, length_v, out=np.ones_like(wanted), where=(length_u > 0.0) & (length_v > 0.0))
+    count_u = np.maximum(2, np.round(np.sqrt(wanted * aspect)))
+    count_v = np.maximum(2, np.round(wanted / count_u))
+    return np.stack([count_u, count_v], axis=1).astype(np.intp)
 
 
-def _even_cells(reach: Array, count: int) -> tuple[Array, Array]:
-    """Cut a parameter range into cells equally long on the surface; return their middles and widths as parts of it."""
-    if reach[-1] > 0.0:
-        borders = np.interp(np.linspace(0.0, reach[-1], count + 1), reach, np.linspace(0.0, 1.0, len(reach)))
-    else:
-        borders = np.linspace(0.0, 1.0, count + 1)
-    return 0.5 * (borders[1:] + borders[:-1]), np.diff(borders)
+def _even_border(reach: Array, owners: Indices, parts: Array) -> Array:
+    """Return the parts of their parameter ranges up to which (p,) faces have been walked to `parts` of their length.
+
+    Args:
+        reach: (F, k + 1) as in `_MeasuredFaces`.
+        owners: (p,) faces.
+        parts: (p,) from 0 to 1.
+    """
+    steps = reach.shape[1] - 1
+    walked = parts * reach[owners, -1]
+    before = np.clip((reach[owners] <= walked[:, None]).sum(axis=1) - 1, 0, steps - 1)
+    start, stop = reach[owners, before], reach[owners, before + 1]
+    within = np.divide(walked - start, stop - start, out=np.zeros_like(walked), where=stop > start)
+    even = reach[owners, -1] <= 0.0
+    return np.where(even, parts, (before + within) / steps)
 
 
-def _inside(face: _MeasuredFace, parameters: Array) -> NDArray[np.bool_]:
+def _inside(measured: _MeasuredFaces, face: int, parameters: Array) -> NDArray[np.bool_]:
     """Tell for each of the (m, 2) parameters whether it lies inside the trimmed face."""
-    classifier = BRepTopAdaptor_FClass2d(face.face, INSIDE * float(np.ptp(face.bounds)))
+    classifier = BRepTopAdaptor_FClass2d(measured.faces[face], INSIDE * float(np.ptp(measured.bounds[face])))
     return np.array([classifier.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in parameters.tolist()], dtype=np.bool_)

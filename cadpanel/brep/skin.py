@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import cast
 
@@ -12,9 +11,11 @@ from OCP.GeomAbs import GeomAbs_G1
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Vertex
 
 from cadpanel.brep import edges, surfaces
+from cadpanel.brep.edges import shell_of
+from cadpanel.brep.polygon import polygon_skin
 from cadpanel.geometry.buildable import check_skin
 from cadpanel.geometry.sections import EllipticSection, axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
 from cadpanel.geometry.straighten import straighten
 
 _BUILDER = BRep_Builder()
@@ -39,7 +40,7 @@ class SkinTopology:
     faces: tuple[TopoDS_Face, ...]
 
 
-def build_skin(shape: PanelShape) -> TopoDS_Shell:
+def build_skin(shape: AnyShape) -> TopoDS_Shell:
     """The panel's skin as an open shell, its faces' normals along n (outward).
 
     A cone of half angle 5e-6 rad or less is built as a cylinder; `straighten` says which and what it moves.
@@ -48,16 +49,9 @@ def build_skin(shape: PanelShape) -> TopoDS_Shell:
         PanelError: if the skin cannot be built (see `check_skin`).
     """
     check_skin(shape)
+    if isinstance(shape, PolygonShape):
+        return polygon_skin(shape)
     return shell_of(skin_topology(straighten(shape).shape).faces)
-
-
-def shell_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Shell:
-    """A shell of faces that already share their edges."""
-    shell = TopoDS_Shell()
-    _BUILDER.MakeShell(shell)
-    for face in faces:
-        _BUILDER.Add(shell, face)
-    return shell
 
 
 def skin_topology(shape: PanelShape) -> SkinTopology:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from OCP.BRep import BRep_Builder
@@ -10,15 +11,17 @@ from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 
 from cadpanel.brep import edges, surfaces
-from cadpanel.brep.skin import SkinTopology, shell_of, skin_topology
+from cadpanel.brep.edges import shell_of
+from cadpanel.brep.polygon import polygon_faces
+from cadpanel.brep.skin import SkinTopology, skin_topology
 from cadpanel.geometry.buildable import SkinSide, check_buildable, other_face
-from cadpanel.geometry.shape import Array, PanelShape
+from cadpanel.geometry.shape import AnyShape, Array, PanelShape, PolygonShape
 from cadpanel.geometry.straighten import Straightened, straighten
 
 _BUILDER = BRep_Builder()
 
 
-def build_solid(shape: PanelShape, thickness: float, skin_side: SkinSide = "outer") -> TopoDS_Solid:
+def build_solid(shape: AnyShape, thickness: float, skin_side: SkinSide = "outer") -> TopoDS_Solid:
     """The sheet of `thickness` mm on the panel's skin; with "outer" it lies at -n, with "inner" at +n.
 
     The other face is the parallel skin (plane by plane, cone by cone with the same half angle), the end walls lie in
@@ -41,29 +44,37 @@ class BuiltPanel:
         solid: the sheet.
     """
 
-    straightened: Straightened
+    straightened: Straightened[PanelShape] | Straightened[PolygonShape]
     skin: TopoDS_Shell
     solid: TopoDS_Solid
 
 
-def build_panel(shape: PanelShape, thickness: float, skin_side: SkinSide = "outer") -> BuiltPanel:
+def build_panel(shape: AnyShape, thickness: float, skin_side: SkinSide = "outer") -> BuiltPanel:
     """Skin and sheet at once, which costs little more than the sheet alone; see `build_skin` and `build_solid`.
 
     Raises:
         PanelError: if the sheet cannot be built (see `check_buildable`).
     """
     check_buildable(shape, thickness, skin_side)
+    if isinstance(shape, PolygonShape):
+        face, faces = polygon_faces(shape, other_face(shape, thickness, skin_side))
+        return BuiltPanel(straightened=straighten(shape), skin=shell_of([face]), solid=_solid_of(faces))
     straightened = straighten(shape)
     own = straightened.shape
     near, far = skin_topology(own), skin_topology(other_face(own, thickness, skin_side))
     top, bottom = (near, far) if skin_side == "outer" else (far, near)
     faces = [*top.faces, *(TopoDS.Face_s(face.Reversed()) for face in bottom.faces), *_walls(own, top, bottom)]
+    return BuiltPanel(straightened=straightened, skin=shell_of(near.faces), solid=_solid_of(faces))
+
+
+def _solid_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
+    """The solid inside faces that share all their edges, their normals outwards."""
     shell = shell_of(faces)
     shell.Closed(True)
     solid = TopoDS_Solid()
     _BUILDER.MakeSolid(solid)
     _BUILDER.Add(solid, shell)
-    return BuiltPanel(straightened=straightened, skin=shell_of(near.faces), solid=solid)
+    return solid
 
 
 def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from OCP.IFSelect import IFSelect_RetDone
@@ -101,10 +102,33 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     Raises:
         DeliveryError: if the file is missing, not STEP, cut short, or damaged.
     """
+    with step_shapes(path, heal=heal) as shapes:
+        return shapes
+
+
+@contextmanager
+def step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> Iterator[list[tuple[str, TopoDS_Shape]]]:
+    """The same, and the kernel's reader is kept for as long as the shapes are worked on.
+
+    It holds hundreds of thousands of small objects. Once they are given back, memory is in so many pieces that the
+    kernel's exact check takes half as long again.
+    """
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"{target} cannot be read: there is no such file.")
     silence_kernel()
+    reader = _loaded(target)
+    if not heal:
+        # Only now: reading a file sets them back.
+        reader.SetShapeFixParameters(_no_healing())
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    if not reader.Transfer(document):
+        raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
+    yield _named_shapes(document)
+
+
+def _loaded(target: Path) -> STEPCAFControl_Reader:
+    """A reader of names and shapes that has read the file and found it sound."""
     reader = STEPCAFControl_Reader()
     for switch in (reader.SetColorMode, reader.SetLayerMode, reader.SetPropsMode, reader.SetGDTMode, reader.SetMatMode):
         switch(False)
@@ -114,12 +138,11 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     fault = damage(reader.Reader().StepModel())
     if fault is not None:
         raise DeliveryError(f"{target} cannot be read: it is damaged ({fault}).")
-    if not heal:
-        # Only now: reading a file sets them back.
-        reader.SetShapeFixParameters(_no_healing())
-    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
-    if not reader.Transfer(document):
-        raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
+    return reader
+
+
+def _named_shapes(document: TDocStd_Document) -> list[tuple[str, TopoDS_Shape]]:
+    """The parts of the document's assemblies, and what stands alone in it."""
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     free = TDF_LabelSequence()
     tool.GetFreeShapes(free)

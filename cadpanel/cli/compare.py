@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from cadpanel.brep.guard import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.comparison import ComparisonModel, write_comparison
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.names import COMPARISON
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.settings import ReferenceSettings
 
 
 def compare(
@@ -18,9 +20,20 @@ def compare(
     weights: options.WeightsOption = None,
     drift_along: options.DriftAlong = 5.0,
     drift_across: options.DriftAcross = 2.0,
+    min_radius: options.MinRadius = 10.0,
     restarts: options.Restarts = 0,
     seed: options.Seed = 0,
     seam_tolerance: options.SeamTolerance = 1.0,
+    unit: options.Unit = None,
+    faces: options.Faces = None,
+    divide: options.Divide = None,
+    lip: options.LipBand = None,
+    grid: options.Grid = None,
+    by: options.GridBy = "length",
+    stations: options.Stations = None,
+    spine: options.Spine = None,
+    network: options.Network = None,
+    mesh: options.Mesh = None,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -36,11 +49,25 @@ def compare(
         weights=weights,
         drift_along=drift_along,
         drift_across=drift_across,
+        min_radius=min_radius,
         restarts=restarts,
         seed=seed,
     )
+    how = options.reference_settings(
+        seam_tolerance=seam_tolerance,
+        unit=unit,
+        faces=faces,
+        divide=divide,
+        lip=lip,
+        grid=grid,
+        by=by,
+        stations=stations,
+        spine=spine,
+        network=network,
+        mesh=mesh,
+    )
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
-        comparison = _run(reference, seam_tolerance, settings, shown)
+        comparison = _run(reference, how, settings, shown)
         write_comparison(comparison, folder / COMPARISON)
     if not quiet:
         from cadpanel.cli.tables import console, print_comparison
@@ -49,9 +76,10 @@ def compare(
         console().print(f"Written: {out}", soft_wrap=True)
 
 
-def _run(file: options.ReferenceFile, seam_tolerance: float, settings: FitSettings, shown: Steps) -> ComparisonModel:
+def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSettings, shown: Steps) -> ComparisonModel:
     shown.begin("Read reference", file.name)
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
+    start_reader()
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.compare import compare as compare_reference
 
@@ -62,4 +90,4 @@ def _run(file: options.ReferenceFile, seam_tolerance: float, settings: FitSettin
         else:
             shown.round(step, round_, excess)
 
-    return compare_reference(read_reference(file, seam_tolerance), settings, progress=tell)
+    return compare_reference(read_reference(file, how), settings, progress=tell)

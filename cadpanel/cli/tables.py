@@ -12,8 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from cadpanel.delivery.comparison import ComparisonModel
+from cadpanel.delivery.names import REPORT
 from cadpanel.delivery.report import CertificateModel, ReportModel, SummaryModel, TimingModel
 
+# Notes that are printed; all of them are in the report.
+_MOST_NOTES = 5
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
 
 _MEASURES: dict[str, Callable[[SummaryModel], str]] = {
@@ -28,7 +31,7 @@ _MEASURES: dict[str, Callable[[SummaryModel], str]] = {
     "  of the panel's length": lambda s: f"{s.drift_along_percent:.2f} %",
     "Largest drift across, mm": lambda s: f"{s.max_free_edge_drift:.1f}",
     "  of the panel's length ": lambda s: f"{s.drift_across_percent:.2f} %",
-    "Gap and drift limits": lambda s: "met" if s.tolerance_met else "not met",
+    "Tolerance and limits": lambda s: "met" if s.tolerance_met else "not met",
 }
 
 
@@ -58,16 +61,22 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
     columns = (report.baselines.local, report.baselines.two_stage, report.summary)
     for name, show in _MEASURES.items():
-        if settings.gap_tolerance is None and name.startswith("Gap and"):
+        if settings.gap_tolerance is None and name.startswith("Tolerance"):
             continue
         table.add_row(name.rstrip(), *(_marked(show(column)) for column in columns))
     out = console()
     out.print()
     out.print(table)
+    if len(report.features) > 1:
+        counts = ", ".join(f"{count} {name}" for name, count in report.features.items())
+        out.print(Text(f"Panels by feature: {counts}."))
     print_certificate(report.certificate, "Certificate")
-    for panel in report.panels:
-        for note in panel.notes:
-            out.print(Text(f"Note on panel '{panel.name}': {note}"))
+    notes = [f"Note: {note}" for note in report.reference.notes]
+    notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]
+    for note in notes[:_MOST_NOTES]:
+        out.print(Text(note))
+    if len(notes) > _MOST_NOTES:
+        out.print(Text(f"{counted(len(notes) - _MOST_NOTES, 'more note')} in {REPORT}."))
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from cadpanel.brep.occt import Shell, Solid
 from cadpanel.brep.solid import build_panel
 from cadpanel.delivery.sheet import SheetSettings
-from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.shape import AnyShape
 from cadpanel.geometry.volume import sheet_volume, skin_area
 
 # What is going on, how much of it is done, and of how much.
@@ -29,7 +29,7 @@ class PanelSheet:
         notes: what the fabricator should know, one sentence each.
     """
 
-    shape: PanelShape
+    shape: AnyShape
     solid: Solid
     skin: Shell
     area: float
@@ -39,7 +39,7 @@ class PanelSheet:
 
 
 def build_panels(
-    shapes: Sequence[PanelShape], sheet: SheetSettings, progress: Progress | None = None
+    shapes: Sequence[AnyShape], sheet: SheetSettings, progress: Progress | None = None
 ) -> tuple[PanelSheet, ...]:
     """Build the sheet and the skin of every panel.
 
@@ -59,7 +59,7 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
-def _build(shape: PanelShape, sheet: SheetSettings) -> PanelSheet:
+def _build(shape: AnyShape, sheet: SheetSettings) -> PanelSheet:
     built = build_panel(shape, sheet.thickness, sheet.skin_side)
     straight = built.straightened
     notes = tuple(

@@ -64,7 +64,7 @@ def _column(
             progress(feature, method, round_, excess)
 
     tell(method, 0, 0.0)
-    result = fit(reference, replace(settings, feature=feature, method=method), tell)
+    result = fit(reference, replace(settings, feature=feature, method=method, max_deviation=None), tell)
     return _record(result)
 
 
@@ -85,9 +85,9 @@ def _settings_record(reference: Reference, settings: FitSettings) -> ComparisonS
 
 def _record(result: FitResult) -> ColumnModel:
     return ColumnModel(
-        feature=result.settings.feature,
+        feature=result.settings.feature_name,
         method=result.settings.method,
-        max_corner_gap=tuple(result.measures.corner_gaps.max(axis=1, initial=0.0).tolist()),
+        max_corner_gap=tuple(result.measures.widest_corners.tolist()),
         summary=summary(result.measures, result.local, result.settings),
         local_rms_deviation=result.local.overall_rms,
         seconds=result.seconds,

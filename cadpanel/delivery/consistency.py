@@ -12,7 +12,8 @@ import numpy as np
 
 from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
-from cadpanel.geometry.shape import Array
+from cadpanel.features.catalogue import AUTO
+from cadpanel.geometry.shape import Array, edge_corners
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
@@ -34,7 +35,7 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     failures += [
         f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
         for panel in report.panels
-        if panel.feature != report.settings.feature
+        if panel.feature != report.settings.feature != AUTO
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
     failures += _summary_faults(report)
@@ -45,7 +46,8 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
 def _patch_faults(panel: PanelModel) -> Iterator[str]:
     corners = np.array(panel.corners)
     for index, patch in enumerate(panel.patches):
-        off = float(np.abs(_distance(patch, corners[:, index : index + 2].reshape(-1, 3))).max())
+        own = corners[:, index : index + 2] if len(corners) == 2 else corners
+        off = float(np.abs(_distance(patch, own.reshape(-1, 3))).max())
         if not off <= ON_PATCH:
             yield (
                 f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) passes its corners "
@@ -84,9 +86,18 @@ def _distance(patch: PatchModel, points: Array) -> Array:
 
 
 def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str]:
-    first, second = (np.array(panels[name].corners[end]) for name, end in zip(seam.panels, seam.ends, strict=True))
     name = f"Seam '{seam.panels[0]}' to '{seam.panels[1]}'"
     gaps = np.array(seam.corner_gaps)
+    try:
+        first, second = (
+            edge_corners(np.array(panels[panel].corners), edge)
+            for panel, edge in zip(seam.panels, seam.edges, strict=True)
+        )
+    except ValueError as error:
+        yield f"{name}: {error}."
+        return
+    if len(gaps) == 2:
+        first, second = first[[0, -1]], second[[0, -1]]
     if not first.shape == second.shape == (len(gaps), 3):
         yield f"{name}: the report has {len(gaps)} corner gaps for {len(first)} and {len(second)} corners."
         return
@@ -132,6 +143,9 @@ def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
     if tolerance is None:
         return
     widest = max(summary.max_corner_gap, summary.max_seam_gap)
+    deviation = report.settings.max_deviation
+    if summary.tolerance_met and deviation is not None and summary.max_deviation > deviation + SAME_LENGTH:
+        yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
     if summary.tolerance_met and widest > tolerance:
         yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
     limits = (
@@ -142,7 +156,14 @@ def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
     if summary.tolerance_met and beyond:
         way, drift, limit = beyond[0]
         yield f"The report calls its limits met, and a drift {way} in it is {drift:.6g} %, {limit:.6g} % are allowed."
-    if not summary.tolerance_met and not beyond and widest < tolerance - SAME_LENGTH and _well_within(limits):
+    far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
+    if (
+        not summary.tolerance_met
+        and not far
+        and not beyond
+        and widest < tolerance - SAME_LENGTH
+        and _well_within(limits)
+    ):
         yield "The report calls its tolerance not met, and all its gaps and drifts are within their limits."
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from pathlib import Path
 
+from cadpanel.brep.inspection_pool import Helper, second_interpreter
 from cadpanel.delivery.build import PanelSheet, Progress, build_panels, say_nothing
 from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.folder import delivery_folder
@@ -69,14 +71,15 @@ def fill_delivery(
         progress: told of the steps.
     """
     tell = progress or say_nothing
-    began = time.perf_counter()
-    built = build_panels(result.shapes, sheet, tell)
-    panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
-    built_at = time.perf_counter()
-    _write(folder, built, Path(result.reference.source).stem, sheet, tell)
-    written_at = time.perf_counter()
-    tell("verify", 0, 1)
-    certificate = prove(folder, panels, seams, sheet.thickness, sheet.skin_side)
+    with second_interpreter(len(result.shapes)) as helper:
+        began = time.perf_counter()
+        built = build_panels(result.shapes, sheet, tell)
+        panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
+        built_at = time.perf_counter()
+        _write(folder, built, Path(result.reference.source).stem, sheet, tell, helper)
+        written_at = time.perf_counter()
+        tell("verify", 0, 1)
+        certificate = prove(folder, panels, seams, sheet.thickness, sheet.skin_side, helper)
     verified_at = time.perf_counter()
     _demand(certificate)
     report = ReportModel(
@@ -85,6 +88,7 @@ def fill_delivery(
         solve=solve_record(result),
         panels=panels,
         seams=seams,
+        features=dict(Counter(panel.feature for panel in panels)),
         summary=summary(result.measures, result.local, result.settings),
         baselines=baselines_record(result),
         certificate=certificate,
@@ -101,11 +105,21 @@ def fill_delivery(
     return report
 
 
-def _write(folder: Path, built: tuple[PanelSheet, ...], title: str, sheet: SheetSettings, tell: Progress) -> None:
+def _write(
+    folder: Path,
+    built: tuple[PanelSheet, ...],
+    title: str,
+    sheet: SheetSettings,
+    tell: Progress,
+    helper: Helper | None,
+) -> None:
+    """The skins first: a helper reads them while the panels are being written."""
     tell("write", 0, 2)
-    write_solids(folder / PANELS, built, title, sheet.schema)
-    tell("write", 1, 2)
     write_skins(folder / SKINS, built, title, sheet.schema)
+    if helper is not None:
+        helper.begin(folder / SKINS)
+    tell("write", 1, 2)
+    write_solids(folder / PANELS, built, title, sheet.schema)
     tell("write", 2, 2)
 
 

@@ -9,12 +9,14 @@ import numpy as np
 from cadpanel.delivery.jsonfile import Vector
 from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.geometry.sections import AxisFrame, axis_frame, cut_cone, radius_range
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
 
 
-def patch_models(shape: PanelShape) -> tuple[PatchModel, ...]:
+def patch_models(shape: AnyShape) -> tuple[PatchModel, ...]:
     """The patches of a panel as it is built (see `straighten`), in the order of the walk."""
     corners = shape.corners()
+    if isinstance(shape, PolygonShape):
+        return (PlanePatchModel(normal=vector(shape.normal), point=vector(corners[0, 0])),)
     models: list[PatchModel] = []
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
+from cadpanel.brep.inspection_pool import Helper
 from cadpanel.delivery.names import PANELS, SKINS
 from cadpanel.delivery.patch_records import PlanePatchModel
 from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel
@@ -16,7 +17,12 @@ from cadpanel.geometry.shape import Array
 
 
 def prove(
-    folder: Path, panels: Sequence[PanelModel], seams: Sequence[SeamModel], thickness: float, skin_side: SkinSide
+    folder: Path,
+    panels: Sequence[PanelModel],
+    seams: Sequence[SeamModel],
+    thickness: float,
+    skin_side: SkinSide,
+    helper: Helper | None = None,
 ) -> CertificateModel:
     """What reading panels.step and skins.step in a folder back shows.
 
@@ -26,6 +32,7 @@ def prove(
         seams: as the report states them.
         thickness: of the sheet, mm.
         skin_side: "outer" where the sheet lies behind the skin's normals.
+        helper: a second interpreter that is running already.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
@@ -43,10 +50,10 @@ def prove(
         for panel in panels
     ]
     gaps = [
-        ExpectedSeam(panels=seam.panels, ends=seam.ends, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
+        ExpectedSeam(panels=seam.panels, edges=seam.edges, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
         for seam in seams
     ]
-    return _record(certify(folder / PANELS, folder / SKINS, expected, gaps))
+    return _record(certify(folder / PANELS, folder / SKINS, expected, gaps, helper))
 
 
 def _far_planes(panel: PanelModel, depth: float) -> Array:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 
@@ -11,25 +13,46 @@ from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.patches import patch_models, vector
 from cadpanel.delivery.report import (
     BaselinesModel,
-    End,
     PanelModel,
     ReferenceModel,
     SeamModel,
+    Setting,
     SettingsModel,
     SolveModel,
     WeightsModel,
 )
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.delivery.summary import summary
+from cadpanel.features.feature import Feature
 from cadpanel.fitting.measures import Measures
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.reference.model import Reference, Seam
+from cadpanel.reference.model import PanelReference, Reference, Seam
+from cadpanel.reference.settings import ReferenceSettings
+
+FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
 def reference_record(reference: Reference) -> ReferenceModel:
     """The file and what it holds."""
-    return ReferenceModel(file=reference.source, panels=len(reference.panels), seams=len(reference.seams))
+    return ReferenceModel(
+        file=reference.source,
+        panels=len(reference.panels),
+        seams=len(reference.seams),
+        notes=reference.notes,
+        reading=_reading(reference.settings),
+    )
+
+
+def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
+    """The settings that differ from their defaults; files by their names."""
+    usual = ReferenceSettings()
+    changed = {one.name: getattr(settings, one.name) for one in fields(settings)}
+    return {
+        name: value.name if isinstance(value, Path) else value
+        for name, value in changed.items()
+        if value != getattr(usual, name)
+    }
 
 
 def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSettings) -> SettingsModel:
@@ -37,12 +60,15 @@ def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSet
     weights = settings.weights
     return SettingsModel(
         cadpanel_version=version("cadpanel"),
-        feature=settings.feature,
+        feature=settings.feature_name,
+        composition=tuple(map(repr, settings.feature.patches)) if isinstance(settings.feature, Feature) else None,
+        max_deviation=settings.max_deviation,
         tilt=settings.tilt,
         method=settings.method,
         gap_tolerance=settings.gap_tolerance if weights is None else None,
         drift_along=settings.drift_along,
         drift_across=settings.drift_across,
+        min_radius=settings.min_radius,
         weights=None
         if weights is None
         else WeightsModel(gap=weights.gap, deviation=weights.deviation, drift=weights.drift),
@@ -74,19 +100,18 @@ def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[Panel
 
 
 def _panel(measures: Measures, index: int, built: PanelSheet) -> PanelModel:
-    low, high = (tuple(vector(corner) for corner in end) for end in built.shape.corners())
     return PanelModel(
         name=built.shape.name,
         feature=built.shape.feature,
         rms_deviation=float(measures.rms_deviation[index]),
         max_deviation=float(measures.max_deviation[index]),
         hausdorff=float(measures.hausdorff[index]),
-        max_corner_drift=float(measures.drift[index].max()),
-        max_drift_along=float(measures.drift_along[index].max()),
-        max_free_edge_drift=float(measures.drift_across[index].max()),
+        max_corner_drift=float(measures.drift[index]),
+        max_drift_along=float(measures.drift_along[index]),
+        max_free_edge_drift=float(measures.drift_across[index]),
         area=built.area,
         volume=built.volume,
-        corners=(low, high),
+        corners=tuple(tuple(vector(corner) for corner in row) for row in built.shape.corners()),
         patches=patch_models(built.shape),
         moved=built.moved,
         notes=built.notes,
@@ -110,11 +135,11 @@ def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
 
 def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> SeamModel:
     order = np.argsort(seam.panels, kind="stable")
-    first, second = (_end(seam.ends[i]) for i in order)
+    first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
     gaps = measures.corner_gaps[index]
     return SeamModel(
         panels=_names(reference, seam),
-        ends=(first, second),
+        edges=(first, second),
         reversed=seam.reversed,
         corner_gaps=tuple(gaps.tolist()),
         max_corner_gap=float(gaps.max()),
@@ -123,5 +148,6 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> S
     )
 
 
-def _end(end: int) -> End:
-    return 1 if end else 0
+def _edge(panel: PanelReference, edge: int) -> str:
+    """The edge as features call it: ends and sides of four-sided panels, numbers of others."""
+    return FOUR_EDGES[edge] if panel.four_sided else f"edge {edge}"

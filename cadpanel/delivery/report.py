@@ -14,9 +14,10 @@ from pydantic import Field, model_validator
 from cadpanel.delivery.jsonfile import NonNegative, Record, Vector, read_json, write_json
 from cadpanel.delivery.patch_records import PatchModel
 
+Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
+Setting = str | int | float | tuple[str | int | float, ...]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
-End = Literal[0, 1]
 
 
 class UnitsModel(Record):
@@ -27,11 +28,20 @@ class UnitsModel(Record):
 
 
 class ReferenceModel(Record):
-    """What was approximated: the file, and how many panels and seams it holds."""
+    """What was approximated.
+
+    Attributes:
+        file: name of the file.
+        panels, seams: how many there are.
+        notes: what was mended, moved, guessed or left out when it was read, one sentence each.
+        reading: how it was read and cut, by the options that were not left at their defaults.
+    """
 
     file: str
     panels: NonNegativeCount
     seams: NonNegativeCount
+    notes: tuple[str, ...] = ()
+    reading: dict[str, Setting] = Field(default_factory=dict)
 
 
 class WeightsModel(Record):
@@ -47,12 +57,15 @@ class SettingsModel(Record):
 
     Attributes:
         cadpanel_version: of the program that wrote the delivery.
-        feature: name of the shape feature.
+        feature: name of the shape feature, "auto" where each panel has the cheapest that will do.
+        composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
+        max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         tilt: "free" where cut planes may tilt, "fixed" where they stand upright.
         method: name of the method.
         gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
+        min_radius: tightest radius that was allowed anywhere, mm.
         weights: the weights, or None where a tolerance was held.
         restarts: further starts.
         seed: of the random numbers.
@@ -64,11 +77,14 @@ class SettingsModel(Record):
 
     cadpanel_version: str
     feature: str
+    composition: tuple[str, ...] | None = None
+    max_deviation: Annotated[float, Field(gt=0.0)] | None = None
     tilt: Literal["free", "fixed"]
     method: str
     gap_tolerance: Annotated[float, Field(gt=0.0)] | None
     drift_along: NonNegative
     drift_across: NonNegative
+    min_radius: NonNegative = 0.0
     weights: WeightsModel | None
     restarts: NonNegativeCount
     seed: int
@@ -106,7 +122,8 @@ class PanelModel(Record):
         max_free_edge_drift: the same, counted across the free edges only, mm.
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
-        corners: of the skin as it is built, [end][ruling], mm; by them the files are held against the report.
+        corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
+            of a chain, one row round a polygon.
         patches: in the order of the walk across the panel, as they are built.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
         notes: what the fabricator should know, one sentence each.
@@ -122,34 +139,38 @@ class PanelModel(Record):
     max_free_edge_drift: NonNegative
     area: Positive
     volume: Positive
-    corners: tuple[tuple[Vector, ...], tuple[Vector, ...]]
+    corners: tuple[tuple[Vector, ...], ...]
     patches: tuple[PatchModel, ...]
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:
-        for end, corners in enumerate(self.corners):
-            if not len(corners) == len(self.patches) + 1 >= 2:
-                raise ValueError(f"{len(corners)} corners at end {end} do not fit {len(self.patches)} patches")
+        rows = [len(row) for row in self.corners]
+        chain = rows == 2 * [len(self.patches) + 1] and len(self.patches) >= 1
+        polygon = len(rows) == 1 and rows[0] >= 3 and len(self.patches) == 1
+        if not (chain or polygon):
+            raise ValueError(f"corners in rows of {rows} do not fit {len(self.patches)} patches")
         return self
 
 
 class SeamModel(Record):
-    """Two panels that meet end to end, and how well they do.
+    """Two panels that meet edge to edge, and how well they do.
 
     Attributes:
         panels: the two names.
-        ends: which end (0 or 1) of each panel lies on the seam.
-        reversed: whether the first corner of one panel meets the last corner of the other.
-        corner_gaps: distance between corresponding corners, in the order of the first panel's walk, mm.
+        edges: which edge of each panel lies on the seam: "end 0", "end 1", "side 0", "side 1"; of a polygon "edge 0"
+            and so on.
+        reversed: whether the first corner of one edge meets the last corner of the other.
+        corner_gaps: distance between corresponding corners, in the order of the first panel's edge, mm; only the two
+            outermost correspond where the edges are of different kinds.
         max_corner_gap: the largest of them, mm.
-        max_seam_gap: symmetric Hausdorff distance between the two end curves, mm.
+        max_seam_gap: symmetric Hausdorff distance between the two edges, mm.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
     """
 
     panels: tuple[str, str]
-    ends: tuple[End, End]
+    edges: tuple[Edge, Edge]
     reversed: bool
     corner_gaps: tuple[NonNegative, ...]
     max_corner_gap: NonNegative
@@ -244,6 +265,7 @@ class ReportModel(Record):
     solve: SolveModel
     panels: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
+    features: dict[str, NonNegativeCount] = Field(default_factory=dict)
     summary: SummaryModel
     baselines: BaselinesModel
     certificate: CertificateModel

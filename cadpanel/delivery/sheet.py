@@ -7,7 +7,8 @@ from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import require
-from cadpanel.geometry.buildable import THICKEST_SHEET, THINNEST_SHEET, SkinSide
+from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET
 
 Schema = Literal["AP242", "AP214"]
 

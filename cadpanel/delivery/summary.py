@@ -21,7 +21,7 @@ def summary(measures: Measures, local: Measures, settings: FitSettings) -> Summa
         local: of the local fit of the same feature, which its deviation is held against.
         settings: with the tolerance and the limits.
     """
-    lengths = measures.lengths[:, None, None]
+    lengths = measures.lengths
     return SummaryModel(
         max_corner_gap=measures.max_corner_gap,
         max_seam_gap=measures.max_seam_gap,

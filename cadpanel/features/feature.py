@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import SettingsError
+from cadpanel.features.boundary import Edge, chain_edges
 from cadpanel.features.numbers import Number
 from cadpanel.features.patches import Patch
+from cadpanel.features.rank import refuse_dependent
+from cadpanel.features.walk import Points, Walk, end_points, walk
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-Tilt = Literal["free", "fixed"]
+Cuts = Literal["mitre", "upright", "parallel", "square"]
+MOST_PATCHES = 64
 
 # The anchor ruling sits in the middle of the anchor patch and may move only in ways that change the panel. Sliding it
-# along itself, and for a plane anything within the plane, changes nothing; those motions are left out.
-_CURVED_ANCHOR = (
+# along itself changes nothing and is left out.
+_ANCHOR = (
     Number("anchor: shift_b", "length"),
     Number("anchor: shift_n", "length"),
     Number("anchor: turn_b", "slope"),
@@ -28,51 +33,91 @@ _CURVED_ANCHOR = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Feature:
     """A chain of patches with tangent continuity, and the numbers that describe it.
 
     Attributes:
-        name: its name in the catalogue, for example "plane-cone-plane".
-        patches: the patches in the order of the walk.
-        tilt: "free" lets both cut planes tilt (mitre, 3 numbers an end); "fixed" holds them upright on the panel as the
-            paper's trimming does (2 numbers an end).
+        patches: the patches in the order of the walk, from side 0 to side 1.
+        name: as reports call it; by default the kinds of its patches.
+        cuts: how the planes lie that cut the two ends:
+            "mitre": each tilts freely (3 numbers an end);
+            "upright": each may turn about the panel's normal, as in the paper's trimming (2 numbers an end);
+            "parallel": both have one normal, which is free (4 numbers together);
+            "square": both stand square on the ruling in the middle (1 number an end).
+            Tilting about its own line does nothing to a flat panel, so there "mitre" is "upright".
         anchor: index of the patch in whose middle the walk starts; lengths and angles stay well scaled there.
-        numbers: all numbers in the order: anchor, patches, cut of end 0, cut of end 1.
+        numbers: all numbers in the order: anchor, patches, cut of end 0, cut of end 1; lengths in mm until `in_units`.
         free: indices of the numbers that the fit may choose.
+        tied: pairs of indices (number, the number whose value it takes).
     """
 
-    name: str
     patches: tuple[Patch, ...]
-    tilt: Tilt = "free"
-    anchor: int = field(init=False)
-    numbers: tuple[Number, ...] = field(init=False)
-    free: IntArray = field(init=False, repr=False, compare=False)
+    name: str
+    cuts: Cuts
+    anchor: int
+    numbers: tuple[Number, ...] = field(repr=False)
+    free: IntArray = field(repr=False, compare=False)
+    tied: tuple[tuple[int, int], ...] = field(repr=False)
 
-    def __post_init__(self) -> None:
-        """Choose the anchor and lay out the numbers."""
-        if self.tilt not in ("free", "fixed"):
-            raise SettingsError(f"tilt must be 'free' or 'fixed', not '{self.tilt}'")
-        middle = (len(self.patches) - 1) / 2
-        curved = [i for i, patch in enumerate(self.patches) if patch.kind != "plane"]
-        if not curved:
-            raise SettingsError(f"feature '{self.name}' has no cone or cylinder; flat panels are not supported yet")
-        object.__setattr__(self, "anchor", min(curved, key=lambda i: abs(i - middle)))
-        numbers = [*_CURVED_ANCHOR]
-        for i, patch in enumerate(self.patches):
-            numbers += [Number(f"patch {i}: {number.name}", number.unit, number.fixed) for number in patch.numbers()]
+    def __init__(self, *patches: Patch, name: str | None = None, cuts: Cuts = "mitre") -> None:
+        """Lay out the numbers, and refuse a chain in which some of them depend on the others.
+
+        Raises:
+            SettingsError: there is no patch, a number is none, or numbers depend on each other; the message names them.
+        """
+        if not 1 <= len(patches) <= MOST_PATCHES:
+            raise SettingsError(f"a feature has between 1 and {MOST_PATCHES} patches, not {len(patches)}")
+        if cuts not in get_args(Cuts):
+            raise SettingsError(f"the cuts of a feature must be one of {', '.join(get_args(Cuts))}, not '{cuts}'")
+        set_ = object.__setattr__
+        set_(self, "patches", tuple(patches))
+        set_(self, "name", name or "-".join(patch.kind for patch in patches))
+        set_(self, "cuts", cuts)
+        curved = [i for i, patch in enumerate(patches) if patch.kind != "plane"]
+        middle = (len(patches) - 1) / 2
+        set_(self, "anchor", min(curved or range(len(patches)), key=lambda i: abs(i - middle)))
+        numbers = [*_ANCHOR, *(number.within(i) for i, patch in enumerate(patches) for number in patch.numbers())]
+        tilts = cuts in ("mitre", "parallel") and bool(curved)
         for end in (0, 1):
             numbers += [
                 Number(f"cut {end}: position", "length"),
-                Number(f"cut {end}: skew", "slope"),
-                Number(f"cut {end}: tilt", "slope", None if self.tilt == "free" else 0.0),
+                Number(f"cut {end}: skew", "slope", 0.0 if cuts == "square" else None),
+                Number(f"cut {end}: tilt", "slope", None if tilts else 0.0),
             ]
-        object.__setattr__(self, "numbers", tuple(numbers))
-        object.__setattr__(self, "free", np.array([i for i, n in enumerate(numbers) if n.fixed is None], dtype=np.intp))
+        count = len(numbers)
+        tied = tuple((count - 3 + i, count - 6 + i) for i in (1, 2)) if cuts == "parallel" else ()
+        set_(self, "numbers", tuple(numbers))
+        set_(self, "tied", tuple(pair for pair in tied if numbers[pair[1]].fixed is None))
+        bound = {number for number, _ in self.tied}
+        free = [i for i, number in enumerate(numbers) if number.fixed is None and i not in bound]
+        set_(self, "free", np.array(free, dtype=np.intp))
+        refuse_dependent(self)
+
+    @property
+    def curved(self) -> tuple[bool, ...]:
+        """For each patch whether it is a cone or cylinder."""
+        return tuple(patch.kind != "plane" for patch in self.patches)
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """End 0, end 1, side 0 and side 1."""
+        return chain_edges(self.curved)
+
+    @property
+    def corner_count(self) -> int:
+        """Number of corners."""
+        return 2 * (len(self.patches) + 1)
+
+    def in_units(self, length: float) -> Self:
+        """The same feature with lengths counted in units of `length` mm."""
+        scaled = copy.copy(self)
+        object.__setattr__(scaled, "numbers", tuple(number.in_units(length) for number in self.numbers))
+        return scaled
 
     def patch_slice(self, patch: int) -> slice:
         """Where the numbers of one patch stand among `numbers`."""
-        start = len(_CURVED_ANCHOR) + sum(len(other.numbers()) for other in self.patches[:patch])
+        start = len(_ANCHOR) + sum(len(other.numbers()) for other in self.patches[:patch])
         return slice(start, start + len(self.patches[patch].numbers()))
 
     def cut_slice(self, end: int) -> slice:
@@ -81,8 +126,36 @@ class Feature:
         return slice(start, start + 3)
 
     def expand(self, unknowns: Array) -> Array:
-        """(n, numbers) all numbers from the (n, free) unknowns; the fixed ones take their values."""
+        """(n, numbers) all numbers from the (n, free) unknowns; fixed and tied ones take their values."""
         values = np.empty((len(unknowns), len(self.numbers)))
         values[:, :] = [0.0 if number.fixed is None else number.fixed for number in self.numbers]
         values[:, self.free] = unknowns
+        for number, source in self.tied:
+            values[:, number] = values[:, source]
         return values
+
+    def by_unknowns(self, derivatives: Array) -> Array:
+        """Derivatives (..., free) by the unknowns, from those (..., numbers) by all numbers."""
+        if len(self.free) == len(self.numbers):
+            return derivatives
+        chosen: Array = derivatives[..., self.free]
+        for number, source in self.tied:
+            chosen[..., np.searchsorted(self.free, source)] += derivatives[..., number]
+        return chosen
+
+    def bounds(self) -> tuple[Array, Array]:
+        """(free,) least and greatest values of the unknowns."""
+        chosen = [self.numbers[i] for i in self.free]
+        return np.array([number.lower for number in chosen]), np.array([number.upper for number in chosen])
+
+    def walk(self, values: Array, *, derivatives: bool) -> Walk:
+        """Walk panels with these numbers (n, numbers)."""
+        return walk(self, values, derivatives=derivatives)
+
+    def corners(self, walked: Walk) -> Points:
+        """The corners (n, corners, 3) of walked panels."""
+        return end_points(walked, walked.edges)
+
+    def arcs(self, walked: Walk) -> Points:
+        """The arc points (n, arcs, 3) of walked panels."""
+        return end_points(walked, walked.arcs)

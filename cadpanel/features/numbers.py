@@ -1,9 +1,18 @@
-"""The numbers that describe a feature, by name; some are unknowns of the fit, some are fixed by the feature."""
+"""The numbers that describe a feature, by name; the fit chooses some, within bounds or without, and some are fixed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Literal
+
+from cadpanel.errors import SettingsError
+
+Value = float | tuple[float | None, float | None] | None
+"""What a feature says of a number: its value, its bounds (None for an open side), or nothing, and the fit chooses."""
+
+Unit = Literal["length", "angle", "slope"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,10 +21,58 @@ class Number:
 
     Attributes:
         name: what it is, for example "patch 1: half_angle".
-        unit: "length" (in units of the panel size inside the solver), "angle" (radians) or "slope".
-        fixed: the value it is held at, in these units, or None where the fit is free to choose it.
+        unit: "length" (mm, or units of the solver's length), "angle" (radians) or "slope".
+        fixed: the value it is held at, or None where the fit is free to choose it.
+        lower, upper: bounds of what the fit may choose.
     """
 
     name: str
-    unit: Literal["length", "angle", "slope"]
+    unit: Unit
     fixed: float | None = None
+    lower: float = -math.inf
+    upper: float = math.inf
+
+    @staticmethod
+    def of(name: str, unit: Unit, value: Value) -> Number:
+        """The number that a feature's author describes by a value, by bounds or by nothing.
+
+        Raises:
+            SettingsError: the value is no finite number, or the bounds leave nothing between them.
+        """
+        if value is None:
+            return Number(name, unit)
+        if isinstance(value, tuple):
+            if len(value) != 2:
+                raise SettingsError(f"the bounds of '{name}' must be two numbers (least, greatest), not {value!r}")
+            lower, upper = (
+                _finite(name, bound, open_) for bound, open_ in zip(value, (-math.inf, math.inf), strict=True)
+            )
+            if not lower < upper:
+                raise SettingsError(f"the bounds of '{name}' leave nothing between {lower:g} and {upper:g}")
+            return Number(name, unit, None, lower, upper)
+        return Number(name, unit, _finite(name, value, math.nan))
+
+    @property
+    def sign(self) -> int:
+        """1 or -1 where no value but 0 can have another sign, else 0."""
+        least, greatest = (self.lower, self.upper) if self.fixed is None else (self.fixed, self.fixed)
+        return int(least >= 0.0 < greatest) - int(greatest <= 0.0 > least)
+
+    def within(self, patch: int) -> Number:
+        """The same number as one of patch `patch` of a chain."""
+        return replace(self, name=f"patch {patch}: {self.name}")
+
+    def in_units(self, length: float) -> Number:
+        """The same number with lengths counted in units of `length` mm."""
+        if self.unit != "length":
+            return self
+        fixed = None if self.fixed is None else self.fixed / length
+        return replace(self, fixed=fixed, lower=self.lower / length, upper=self.upper / length)
+
+
+def _finite(name: str, value: object, open_: float) -> float:
+    if value is None and math.isinf(open_):
+        return open_
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)):
+        raise SettingsError(f"'{name}' must be a finite number, two bounds or nothing, not {value!r}")
+    return float(value)

@@ -11,7 +11,8 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.numbers import Number
+from cadpanel.errors import SettingsError
+from cadpanel.features.numbers import Number, Value
 from cadpanel.geometry.frames import cross, rotate_about, rotation_twist
 
 Array = NDArray[np.float64]
@@ -60,10 +61,19 @@ class Patch(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plane:
-    """A flat patch: the ruling moves by a width along b and turns in the plane by an angle (2 numbers)."""
+    """A flat patch: the ruling moves by a width along b and turns in the plane by an angle (2 numbers).
 
-    width: float | None = None
-    turn: float | None = None
+    Attributes:
+        width: mm; a number fixes it, two bound it, None leaves it to the fit.
+        turn: radians, likewise.
+    """
+
+    width: Value = None
+    turn: Value = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are none."""
+        self.numbers()
 
     @property
     def kind(self) -> Literal["plane"]:
@@ -72,7 +82,7 @@ class Plane:
 
     def numbers(self) -> tuple[Number, ...]:
         """Width (length) and turn (angle about n, counted the way of the walk)."""
-        return (Number("width", "length", self.width), Number("turn", "angle", self.turn))
+        return (Number.of("width", "length", self.width), Number.of("turn", "angle", self.turn))
 
     def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
         """See `Patch.carry`; on a plane only the sign of `way` and its share of both numbers matter."""
@@ -94,11 +104,32 @@ class Cone:
 
     The axis passes through c = p - radius n in the direction a = cos(half_angle) t - sin(half_angle) n; half_angle = 0
     is exactly the cylinder, and nothing blows up there.
+
+    Attributes:
+        radius: normal radius at the patch's first ruling from the anchor (in the middle of the anchor patch), mm,
+            positive where the patch is convex outwards; a number fixes it, two bound it, None leaves it to the fit.
+        half_angle: radians, likewise; positive where a convex cone widens from end 0 to end 1.
+        sweep: radians, likewise, of the same sign as the radius.
     """
 
-    radius: float | None = None
-    half_angle: float | None = None
-    sweep: float | None = None
+    radius: Value = None
+    half_angle: Value = None
+    sweep: Value = None
+
+    def __post_init__(self) -> None:
+        """Refuse numbers that are none, a radius of 0, and a radius and sweep of different signs.
+
+        Raises:
+            SettingsError: naming the numbers.
+        """
+        radius, _, sweep = self.numbers()
+        if radius.fixed == 0.0:
+            raise SettingsError("the 'radius' of a cone or cylinder must not be 0: that is a line or a point, no patch")
+        if radius.sign * sweep.sign < 0:
+            raise SettingsError(
+                f"the 'radius' {self.radius!r} and the 'sweep' {self.sweep!r} of a cone or cylinder must have one "
+                "sign: positive where it is convex outwards, negative where it is concave"
+            )
 
     @property
     def kind(self) -> Literal["cone", "cylinder"]:
@@ -108,9 +139,9 @@ class Cone:
     def numbers(self) -> tuple[Number, ...]:
         """Normal radius at p (length), half angle and sweep (angles)."""
         return (
-            Number("radius", "length", self.radius),
-            Number("half_angle", "angle", self.half_angle),
-            Number("sweep", "angle", self.sweep),
+            Number.of("radius", "length", self.radius),
+            Number.of("half_angle", "angle", self.half_angle),
+            Number.of("sweep", "angle", self.sweep),
         )
 
     def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
@@ -130,6 +161,6 @@ class Cone:
         return arrived, twist
 
 
-def Cylinder(*, radius: float | None = None, sweep: float | None = None) -> Cone:  # noqa: N802 - named like its siblings
+def Cylinder(*, radius: Value = None, sweep: Value = None) -> Cone:  # noqa: N802 - named like its siblings
     """A circular cylinder: the cone whose half angle is held at 0 (2 numbers)."""
     return Cone(radius=radius, half_angle=0.0, sweep=sweep)

@@ -1,25 +1,30 @@
 """Walk a batch of panels of one feature: rulings, corners and their exact derivatives.
 
 Everything here is in each panel's local frame (axes b, t, n of its reference, origin in its middle) and in units of the
-solver's length. A cut plane is t + skew b + tilt n = position in that frame, so it does not move with the chain.
+solver's length. A cut plane is t + skew b + tilt n = position in that frame, so it does not move with the chain; where
+cuts are "square" it is so in the frame of the anchor ruling, and moves with it.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.feature import Feature
+from cadpanel.features.boundary import ARC_SHARES
 from cadpanel.features.patches import Frames
 from cadpanel.geometry.frames import cayley, cayley_rates, cross, dot, point_velocity
 
+if TYPE_CHECKING:  # a feature walks, so the walk cannot import it
+    from cadpanel.features.feature import Feature
+    from cadpanel.features.polygon import Polygon
+
 Array = NDArray[np.float64]
 
-# Where along the sweep of every curved patch the end curve is held to its neighbour's, besides the corners: a conic
-# with given ends and end tangents has one number left, so a few points pin it.
-ARC_SHARES = (1 / 4, 1 / 2, 3 / 4)
+# Panels differentiated together: what is needed on the way stays in the processor's cache and off the system's memory.
+_CHUNK = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +56,7 @@ class Walk:
         arcs: rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
     """
 
-    feature: Feature
+    feature: Feature | Polygon
     values: Array
     anchor: Rulings
     edges: Rulings
@@ -104,10 +109,10 @@ def walk(feature: Feature, values: Array, *, derivatives: bool) -> Walk:
     return Walk(
         feature,
         values,
-        _stack([start]),
-        _stack([edges[i] for i in range(last + 2)]),
-        _stack(carriers),
-        _stack(arcs),
+        _stack([start], start),
+        _stack([edges[i] for i in range(last + 2)], start),
+        _stack(carriers, start),
+        _stack(arcs, start),
     )
 
 
@@ -135,10 +140,20 @@ def _anchor(feature: Feature, values: Array, derivatives: bool) -> _Step:
     return _Step(frames, twist)
 
 
-def _stack(steps: list[_Step]) -> Rulings:
+def _stack(steps: list[_Step], like: _Step) -> Rulings:
+    if not steps:
+        return _none(like)
     p, b, t, n = (np.stack([getattr(step.frames, axis) for step in steps], axis=1) for axis in "pbtn")
     twists = [step.twist for step in steps if step.twist is not None]
     return Rulings(p, b, t, n, np.stack(twists, axis=1) if twists else None)
+
+
+def _none(like: _Step) -> Rulings:
+    """No rulings at all, for as many panels."""
+    panels = len(like.frames.p)
+    empty = np.zeros((panels, 0, 3))
+    twist = None if like.twist is None else np.zeros((panels, 0, *like.twist.shape[1:]))
+    return Rulings(empty, empty, empty, empty, twist)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +161,8 @@ class Points:
     """Points of the panels that follow the numbers.
 
     Attributes:
-        position: (panels, 2, R, 3) for end 0 and end 1.
-        jacobian: (panels, 2, R, 3, N) or None without derivatives.
+        position: (panels, R, 3).
+        jacobian: (panels, R, 3, N) or None without derivatives.
     """
 
     position: Array
@@ -158,28 +173,82 @@ def cut_planes(walked: Walk) -> tuple[Array, Array]:
     """The cut planes m . x = s: m (panels, 2, 3), not of unit length, and s (panels, 2)."""
     feature, values = walked.feature, walked.values
     cuts = np.stack([values[:, feature.cut_slice(end)] for end in (0, 1)], axis=1)
-    return np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1), cuts[..., 0]
+    m = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
+    if not _carried(feature):
+        return m, cuts[..., 0]
+    anchor = walked.anchor
+    m = m @ np.stack([anchor.b[:, 0], anchor.t[:, 0], anchor.n[:, 0]], axis=1)
+    return m, cuts[..., 0] + dot(m, anchor.p)
 
 
-def pierce(walked: Walk, rulings: Rulings) -> Points:
-    """Where rulings pierce the two cut planes, with exact derivatives where the walk carries twists.
+def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
+    """How `cut_planes` follow the numbers: dm (panels, 2, 3, N) and ds (panels, 2, N)."""
+    feature, anchor = walked.feature, walked.anchor
+    panels, count = walked.values.shape
+    dm, ds = np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))
+    for end in (0, 1):
+        at = feature.cut_slice(end).start
+        ds[:, end, at] = 1.0
+        if not _carried(feature):
+            dm[:, end, 0, at + 1] = dm[:, end, 2, at + 2] = 1.0
+            continue
+        for number, axis in ((at + 1, anchor.b), (at + 2, anchor.n)):
+            dm[:, end, :, number] = axis[:, 0]
+            ds[:, end, number] = dot(axis[:, 0], anchor.p[:, 0])
+    if _carried(feature):
+        if anchor.twist is None:
+            raise ValueError("the panels were walked without derivatives")
+        m, _ = cut_planes(walked)
+        turned = cross(np.swapaxes(anchor.twist[:, :, :3], 2, 3), m[:, :, None])
+        dm += np.swapaxes(turned, 2, 3)
+        # The plane's point p moves along: d(m . p) = dm . p + m . v(p).
+        ds += dot(turned, anchor.p[:, :, None]) + np.einsum(
+            "pex,pxj->pej", m, point_velocity(anchor.twist[:, 0], anchor.p[:, 0])
+        )
+    return dm, ds
+
+
+def _carried(feature: Feature | Polygon) -> bool:
+    return feature.cuts == "square"
+
+
+def end_points(walked: Walk, rulings: Rulings) -> Points:
+    """Where R rulings pierce the two cut planes, (panels, 2 R, 3): first all of end 0, then all of end 1.
 
     With the plane m . x = s, the point is c = p + t (s - m . p) / (m . t). A point that is carried with the ruling has
-    the velocity V; sliding along t to stay in the plane adds t (ds - dm . c - m . V) / (m . t).
+    the velocity V; sliding along t to stay in the plane adds t (ds - dm . c - m . V) / (m . t). Derivatives are exact.
     """
     m, s = cut_planes(walked)
+    panels, count = rulings.p.shape[:2]
     rate = dot(m[:, :, None], rulings.t[:, None])
     slide = (s[..., None] - dot(m[:, :, None], rulings.p[:, None])) / rate
     position = rulings.p[:, None] + slide[..., None] * rulings.t[:, None]
     if rulings.twist is None:
-        return Points(position, None)
-    moved = point_velocity(rulings.twist[:, None], position)
+        return Points(position.reshape(panels, 2 * count, 3), None)
+    moved = np.empty((panels, 2, count, 3, walked.values.shape[1]))
+    rates = cut_plane_rates(walked) if _carried(walked.feature) else None
+    for start in range(0, panels, _CHUNK):
+        part = slice(start, start + _CHUNK)
+        moved[part] = _moved(walked, rulings, part, m[part], position[part], rate[part])
+        if rates is not None:
+            dm, ds = rates[0][part], rates[1][part]
+            along = (ds[:, :, None] - position[part] @ dm) / rate[part][..., None]
+            moved[part] += rulings.t[part, None, :, :, None] * along[..., None, :]
+    return Points(position.reshape(panels, 2 * count, 3), moved.reshape(panels, 2 * count, 3, moved.shape[-1]))
+
+
+def _moved(walked: Walk, rulings: Rulings, part: slice, m: Array, position: Array, rate: Array) -> Array:
+    """Derivatives (n, 2, R, 3, N) of the points (n, 2, R, 3) of some panels, but for cuts that move with the anchor."""
+    if rulings.twist is None:
+        raise ValueError("the panels were walked without derivatives")
+    moved = point_velocity(rulings.twist[part, None], position)
     along = -(m[:, :, None, None] @ moved)[..., 0, :]
-    for end in (0, 1):
-        at = walked.feature.cut_slice(end).start
-        along[:, end, :, at] += 1.0
-        along[:, end, :, at + 1] -= position[:, end, :, 0]
-        along[:, end, :, at + 2] -= position[:, end, :, 2]
+    if not _carried(walked.feature):
+        for end in (0, 1):
+            at = walked.feature.cut_slice(end).start
+            along[:, end, :, at] += 1.0
+            along[:, end, :, at + 1] -= position[:, end, :, 0]
+            along[:, end, :, at + 2] -= position[:, end, :, 2]
     along /= rate[..., None]
-    moved += rulings.t[:, None, :, :, None] * along[..., None, :]
-    return Points(position, moved)
+    moved += rulings.t[part, None, :, :, None] * along[..., None, :]
+    return moved

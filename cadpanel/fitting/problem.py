@@ -3,219 +3,205 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.feature import Feature
-from cadpanel.features.walk import pierce, walk
+from cadpanel.features.catalogue import PanelFeature
+from cadpanel.features.layout import Layout
+from cadpanel.features.skin import skin_normals
+from cadpanel.fitting.limits import LEAST_WIDTH, natural_bounds
+from cadpanel.fitting.outline import outline_of
+from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.start import SampleArrays, Start, end_plane
+from cadpanel.fitting.start import Start, start
 from cadpanel.reference.model import Reference
-from cadpanel.solver.blocks import BlockPattern, Normal
-from cadpanel.solver.levenberg_marquardt import Bounds
 from cadpanel.terms.arc import ArcGap
-from cadpanel.terms.deviation import Deviation, assign, skin_normals
+from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.drift import DriftLimit, Outline
-from cadpanel.terms.gap import CornerGap, Placement, Seams
+from cadpanel.terms.gap import CornerGap, Placement
+from cadpanel.terms.mixed import MixedGap
+from cadpanel.terms.radius import RadiusLimit
 from cadpanel.terms.rows import Term
+from cadpanel.terms.seams import SeamBatch, batches
 from cadpanel.terms.state import State
+from cadpanel.terms.width import WidthLimit
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
+SeamTerm = CornerGap | ArcGap | MixedGap
+
 
 @dataclass(frozen=True)
 class Problem:
-    """Everything that stays the same while one feature is fitted to one reference.
+    """Everything that stays the same while features are fitted to one reference.
 
     Attributes:
-        feature: the feature of all panels.
+        layout: which panels have which feature, in the solver's units.
         place: the panels' own frames.
         deviation: the regression term.
         outline: the reference's corners.
         lengths: (panels,) the panels' lengths in units of the solver's length.
-        seams: who meets whom.
+        seams: who meets whom, in batches of seams that are alike.
         pairs: (pairs, 2) coupled panels.
+        bounds: (panels, size) least and greatest unknowns.
     """
 
-    feature: Feature
+    layout: Layout
     place: Placement
     deviation: Deviation
     outline: Outline
     lengths: Array
-    seams: Seams
+    seams: tuple[SeamBatch, ...]
     pairs: IntArray
+    bounds: tuple[Array, Array]
 
     @property
     def panels(self) -> int:
         """Number of panels."""
-        return len(self.place.origins)
+        return self.layout.panels
+
+    @property
+    def seam_count(self) -> int:
+        """Number of seams."""
+        return sum(len(batch.index) for batch in self.seams)
 
     def state(self, unknowns: Array, *, derivatives: bool = False) -> State:
-        """Walk the panels at the unknowns (panels, free)."""
-        return State(walk(self.feature, self.feature.expand(unknowns), derivatives=derivatives))
+        """Walk the panels at the unknowns (panels, size)."""
+        return State(self.layout, self.layout.walk(unknowns, derivatives=derivatives))
 
-    def corner_gap(self, tolerance: float) -> CornerGap:
-        """Corners of neighbours held within `tolerance` mm."""
-        corners = len(self.feature.patches) + 1
-        return CornerGap(self.seams, self.place, corners=corners, tolerance=tolerance / self.place.length)
+    def corner_gaps(self, tolerance: float) -> list[CornerGap]:
+        """Corners of neighbours held within `tolerance` mm, a term for each batch of seams."""
+        return [CornerGap(batch, self.place, tolerance=tolerance / self.place.length) for batch in self.seams]
 
-    def arc_gap(self, tolerance: float) -> ArcGap:
-        """Conic arcs of neighbours held within `tolerance` mm."""
-        curved = tuple(i for i, patch in enumerate(self.feature.patches) if patch.kind != "plane")
-        return ArcGap(self.seams, self.place, curved=curved, tolerance=tolerance / self.place.length)
+    def curve_gaps(self, tolerance: float) -> list[ArcGap | MixedGap]:
+        """Edges of neighbours held within `tolerance` mm between their corners, where one of them is curved."""
+        length = self.place.length
+        terms: list[ArcGap | MixedGap] = []
+        for batch in self.seams:
+            if batch.straight(0) and batch.straight(1):
+                continue
+            kind = ArcGap if batch.alike else MixedGap
+            terms.append(kind(batch, self.place, self.layout, tolerance=tolerance / length))
+        return terms
 
     def drift_limits(self, settings: FitSettings, margin: float) -> list[DriftLimit]:
         """Corners held within the settings' shares of the panels' lengths, less a relative margin."""
-        shares = ((settings.drift_along, False), (settings.drift_across, True))
-        return [DriftLimit(self.outline, (1.0 - margin) * s * self.lengths, across=across) for s, across in shares]
+        along = (1.0 - margin) * settings.drift_along * self.lengths
+        across = (1.0 - margin) * settings.drift_across * self.lengths
+        return [
+            DriftLimit(self.outline, along, across=False),
+            DriftLimit(self.outline, np.where(self.outline.sided, across, along), across=True),
+        ]
 
-    def free_terms(self) -> list[Term]:
-        """Deviation and the weak pull of corners to the outline: what a panel wants by itself."""
-        return [self.deviation, *self.drift_limits(FitSettings(), 0.0)]
+    def shop_limits(self, settings: FitSettings) -> list[RadiusLimit | WidthLimit]:
+        """What can be rolled and folded: least radii of cones and cylinders, least widths of the flanges."""
+        terms: list[RadiusLimit | WidthLimit] = []
+        for place, group in enumerate(self.layout.groups):
+            if any(group.feature.curved):
+                terms.append(RadiusLimit(group, place, self.panels, settings.min_radius / self.place.length))
+                if not all(group.feature.curved):
+                    terms.append(WidthLimit(group, place, self.panels, LEAST_WIDTH / self.place.length))
+        return terms
 
-    def placement_unknowns(self) -> IntArray:
-        """Indices among the unknowns of those that move a panel or trim it: all but its curved patches' numbers."""
-        shape: set[int] = set()
-        for i, patch in enumerate(self.feature.patches):
-            if patch.kind != "plane":
-                numbers = self.feature.patch_slice(i)
-                shape |= set(range(numbers.start, numbers.stop))
-        return np.array([i for i, number in enumerate(self.feature.free) if int(number) not in shape], dtype=np.intp)
+    def take(self, panels: IntArray) -> Problem:
+        """The same problem for some of its panels, without their seams."""
+        features = [self.layout.feature_of[i] for i in panels]
+        layout = Layout.of(features)
+        place, outline = self.place, self.outline.take(panels)
+        # The features that are left may have fewer corners than the longest of all.
+        most = max(feature.corner_count for feature in features)
+        return Problem(
+            layout=layout,
+            place=replace(place, origins=place.origins[panels], axes=place.axes[panels]),
+            deviation=Deviation(np.ascontiguousarray(self.deviation.samples[:, panels]), self.deviation.roots[panels]),
+            outline=replace(outline, corners=outline.corners[:, :most]),
+            lengths=self.lengths[panels],
+            seams=(),
+            pairs=np.empty((0, 2), dtype=np.intp),
+            bounds=(self.bounds[0][panels, : layout.size], self.bounds[1][panels, : layout.size]),
+        )
+
+    def free_terms(self, settings: FitSettings) -> list[Term]:
+        """Deviation, the weak pull of corners to the outline, and what can be made: what a panel wants by itself."""
+        return [self.deviation, *self.drift_limits(FitSettings(), 0.0), *self.shop_limits(settings)]
+
+    def placement_unknowns(self) -> NDArray[np.bool_]:
+        """(panels, size) which unknowns move a panel or trim it: all but its curved patches' numbers."""
+        moves = self.layout.used.copy()
+        for group in self.layout.groups:
+            shape: set[int] = set()
+            for i, curved in enumerate(group.feature.curved):
+                if curved:
+                    numbers = group.feature.patch_slice(i)
+                    shape |= set(range(numbers.start, numbers.stop))
+            held = [i for i, number in enumerate(group.feature.free) if int(number) in shape]
+            moves[group.panels[:, None], held] = False
+        return moves
 
     def deviations(self, unknowns: Array) -> tuple[Array, Array]:
         """RMS per panel (panels,), area-weighted, and signed distances (panels, m) of all samples, mm."""
-        distance, _ = self.deviation.distances(self.state(unknowns).walked)
+        distance, _ = self.deviation.distances(self.state(unknowns))
         weight = self.deviation.roots**2
         rms = np.sqrt(np.sum(weight * distance**2, axis=1) / weight.sum(axis=1))
         return rms * self.place.length, distance * self.place.length
 
     def normal_tilt(self, unknowns: Array, reference: Reference) -> Array:
         """(panels,) RMS angle between the reference's normals and the skin's under its samples, radians."""
-        walked = self.state(unknowns).walked
-        patch = assign(walked, self.deviation.samples)
+        state = self.state(unknowns)
+        _, patch = self.deviation.distances(state)
         normals = np.einsum("pmx,pxa->pma", SampleArrays.of(reference).normals, self.place.axes)
-        cosine = np.einsum("pma,pma->pm", normals, skin_normals(walked, self.deviation.samples, patch))
+        square = np.zeros(patch.shape)
+        for group, walked in zip(self.layout.groups, state.walks, strict=True):
+            own = group.panels
+            skin = skin_normals(walked, self.deviation.samples[:, own], patch[own])
+            cosine = np.einsum("pma,pma->pm", normals[own], skin)
+            square[own] = np.arccos(np.clip(cosine, -1.0, 1.0)) ** 2
         weight = self.deviation.roots**2
-        square = np.arccos(np.clip(cosine, -1.0, 1.0)) ** 2
         result: Array = np.sqrt(np.sum(weight * square, axis=1) / weight.sum(axis=1))
         return result
 
 
-def problem(reference: Reference, feature: Feature, samples: SampleArrays, begin: Start) -> Problem:
-    """Turn a reference into the arrays of a problem.
+def pose(reference: Reference, features: Sequence[PanelFeature]) -> tuple[Problem, tuple[Array, ...]]:
+    """The problem of a reference, one feature a panel, and first unknowns (panels, size), the likeliest first.
 
-    Samples weigh by their area, such that the deviation's cost is half the panels' number times the mean square.
+    Raises:
+        PanelError: a panel is not what its feature is made for.
     """
+    length = float(np.mean([panel.length for panel in reference.panels]))
+    layout = Layout.of(features, length)
+    samples = SampleArrays.of(reference)
+    begin = start(reference, layout, samples, length)
+    return _problem(reference, layout, samples, begin), begin.unknowns
+
+
+def _problem(reference: Reference, layout: Layout, samples: SampleArrays, begin: Start) -> Problem:
+    """Turn a reference into arrays. Samples weigh by their area, such that the cost is half the mean square a panel."""
     # Positions relative to the middle of all: map-grid coordinates would cost digits in the gaps.
     centre = begin.origins.mean(axis=0)
     place = Placement(origins=begin.origins - centre, centre=centre, axes=begin.axes, length=begin.length)
     local = np.einsum("pmx,pxa->apm", samples.points - begin.origins[:, None], begin.axes) / begin.length
     share = samples.weights / (samples.weights.sum() / len(samples.weights))
-    outline = _outline(reference, feature, begin)
-    seams, pairs = _seams(reference)
-    deviation = Deviation(np.ascontiguousarray(local), np.sqrt(share))
-    lengths = np.array([panel.length for panel in reference.panels]) / begin.length
-    return Problem(feature, place, deviation, outline, lengths, seams, pairs)
+    seams, pairs = _seams(reference, layout)
+    return Problem(
+        layout=layout,
+        place=place,
+        deviation=Deviation(np.ascontiguousarray(local), np.sqrt(share)),
+        outline=outline_of(reference, layout, begin),
+        lengths=np.array([panel.length for panel in reference.panels]) / begin.length,
+        seams=seams,
+        pairs=pairs,
+        bounds=natural_bounds(layout, begin.unknowns, begin.length),
+    )
 
 
-def _outline(reference: Reference, feature: Feature, begin: Start) -> Outline:
-    """The outline's corners, and on the ends the points that the fold's corners start nearest to."""
-    walked = walk(feature, begin.values, derivatives=False)
-    started = pierce(walked, walked.edges).position
-    sides = np.array([panel.corners for panel in reference.panels])
-    chords = sides[:, 1] - sides[:, 0]
-    chords = np.einsum("psx,pxa->psa", chords, begin.axes) / np.linalg.norm(chords, axis=-1)[..., None]
-    corners, along = np.empty_like(started), np.empty_like(started)
-    end_normals = np.empty((*started.shape[:2], 3))
-    share = np.linspace(0.0, 1.0, started.shape[2])[None, :, None]
-    along[:] = ((1.0 - share) * chords[:, None, 0] + share * chords[:, None, 1])[:, None]
-    along /= np.linalg.norm(along, axis=-1, keepdims=True)
-    for i, panel in enumerate(reference.panels):
-        for end in (0, 1):
-            line = (panel.ends[end] - begin.origins[i]) @ begin.axes[i] / begin.length
-            nearest = np.argmin(np.linalg.norm(line[None] - started[i, end, 1:-1, None], axis=-1), axis=1)
-            corners[i, end] = line[[0, *nearest, -1]]
-            end_normals[i, end] = end_plane(line, tilt=True)[1]
-    return Outline(corners, along, end_normals)
-
-
-def _seams(reference: Reference) -> tuple[Seams, IntArray]:
+def _seams(reference: Reference, layout: Layout) -> tuple[tuple[SeamBatch, ...], IntArray]:
     panels = np.array([seam.panels for seam in reference.seams], dtype=np.intp).reshape(-1, 2)
-    ends = np.array([seam.ends for seam in reference.seams], dtype=np.intp).reshape(-1, 2)
+    edges = np.array([seam.edges for seam in reference.seams], dtype=np.intp).reshape(-1, 2)
     swap = panels[:, 0] > panels[:, 1]
-    panels[swap], ends[swap] = panels[swap, ::-1], ends[swap, ::-1]
+    panels[swap], edges[swap] = panels[swap, ::-1], edges[swap, ::-1]
     pairs, pair = np.unique(panels, axis=0, return_inverse=True)
     backwards = np.array([seam.reversed for seam in reference.seams], dtype=bool)
-    return Seams(panels=panels, ends=ends, reversed=backwards, pair=pair.reshape(-1)), pairs
-
-
-class Objective:
-    """A sum of terms on a problem, as the solver's model.
-
-    Attributes:
-        problem: what the terms are about.
-        terms: the terms.
-        pattern: which panels are coupled through these terms.
-    """
-
-    def __init__(self, of: Problem, terms: Sequence[Term], *, coupled: bool) -> None:
-        """`coupled` where some term sees both panels of a seam."""
-        self.problem = of
-        self.terms = tuple(terms)
-        pairs = of.pairs if coupled else np.empty((0, 2), dtype=np.intp)
-        self.pattern = BlockPattern(of.panels, len(of.feature.free), pairs)
-        self.bounds: Bounds | None = None
-
-    def cost(self, unknowns: Array) -> Array:
-        """See `solver.Model.cost`."""
-        state = self.problem.state(unknowns)
-        cost = np.zeros(self.problem.panels)
-        for term in self.terms:
-            cost += term.cost(state)
-        return np.where(np.isfinite(cost), cost, np.inf)
-
-    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
-        """See `solver.Model.linearize`."""
-        state = self.problem.state(unknowns, derivatives=True)
-        normal = Normal.zero(self.pattern.count, self.pattern.size, len(self.pattern.pairs))
-        cost = np.zeros(self.problem.panels)
-        for term in self.terms:
-            cost += term.add_to(normal, state)
-        return cost, normal
-
-
-class Subset:
-    """A model of which only some unknowns of every panel may move.
-
-    Attributes:
-        active: indices of the unknowns that move.
-        pattern: which panels are coupled.
-    """
-
-    def __init__(self, model: Objective, frozen: Array, active: IntArray) -> None:
-        """The others stay at `frozen` (panels, free)."""
-        self.active = active
-        self.pattern = BlockPattern(model.pattern.count, len(active), model.pattern.pairs)
-        self.bounds: Bounds | None = None
-        self._model, self._frozen = model, frozen
-
-    def fill(self, unknowns: Array) -> Array:
-        """(panels, free) all unknowns from the active ones."""
-        full = self._frozen.copy()
-        full[:, self.active] = unknowns
-        return full
-
-    def cost(self, unknowns: Array) -> Array:
-        """See `solver.Model.cost`."""
-        return self._model.cost(self.fill(unknowns))
-
-    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
-        """See `solver.Model.linearize`."""
-        cost, normal = self._model.linearize(self.fill(unknowns))
-        rows, columns = self.active[:, None], self.active[None, :]
-        return cost, Normal(
-            normal.gradient[:, self.active], normal.diagonal[:, rows, columns], normal.coupling[:, rows, columns]
-        )
+    return batches(layout, panels, edges, backwards, pair.reshape(-1)), pairs

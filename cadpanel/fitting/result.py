@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.features.catalogue import PanelFeature
+from cadpanel.fitting.automatic import Choice
 from cadpanel.fitting.measures import Measures, measure
 from cadpanel.fitting.methods import Fitted, fit_concurrent, fit_local, fit_two_stage
-from cadpanel.fitting.problem import Problem, problem
+from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.fitting.start import SampleArrays, start
-from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.model import Reference
 
 Array = NDArray[np.float64]
 
+# How often panels may be given a closer feature because closing the seams took them too far.
+_PROMOTIONS = 3
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
 Progress = Callable[[str, int, float], None]
 
@@ -34,8 +37,8 @@ class FitResult:
         shapes: the panels, in the order of the reference.
         measures: gaps, deviation and drift of this result.
         local, two_stage: the same measures for the methods that it is held against.
-        tolerance_met: whether every gap is within the tolerance and every drift within its limit; with weights there
-            is no tolerance to miss, and this is True.
+        tolerance_met: whether every gap is within the tolerance, every drift within its limit and, where features are
+            chosen automatically, every deviation within the largest; with weights gaps and drifts have none to miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         seconds: time of the fit, the baselines included.
@@ -43,7 +46,7 @@ class FitResult:
 
     reference: Reference
     settings: FitSettings
-    shapes: tuple[PanelShape, ...]
+    shapes: tuple[AnyShape, ...]
     measures: Measures
     local: Measures
     two_stage: Measures
@@ -53,7 +56,7 @@ class FitResult:
     iterations: int
     seconds: float
 
-    def shape(self, name: str) -> PanelShape:
+    def shape(self, name: str) -> AnyShape:
         """The panel of that name.
 
         Raises:
@@ -69,7 +72,15 @@ class FitResult:
         if self.tolerance_met:
             return None
         m, tolerance = self.measures, self.settings.gap_tolerance
-        gaps = np.maximum(m.corner_gaps.max(axis=1, initial=0.0), m.seam_gap)
+        allowed = self.settings.max_deviation
+        if allowed is not None and m.max_deviation.max() > allowed:
+            far = int(m.max_deviation.argmax())
+            return (
+                f"the largest deviation of {allowed:g} mm is not met: panel '{self.reference.panels[far].name}' is "
+                f"{m.max_deviation[far]:.2f} mm away as a {self.shapes[far].feature}, the best that there is; allow "
+                "more, allow wider gaps, or divide it further"
+            )
+        gaps = np.maximum(m.widest_corners, m.seam_gap)
         if len(gaps) and gaps.max() > tolerance:
             worst = int(gaps.argmax())
             a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
@@ -81,11 +92,11 @@ class FitResult:
             ("along", m.drift_along, self.settings.drift_along),
             ("across", m.drift_across, self.settings.drift_across),
         )
-        way, drift, limit = max(limits, key=lambda kind: float((kind[1].max(axis=(1, 2)) / m.lengths).max()) / kind[2])
-        panel = int(np.argmax(drift.max(axis=(1, 2)) / m.lengths))
+        way, drift, limit = max(limits, key=lambda kind: float((kind[1] / m.lengths).max()) / kind[2])
+        panel = int(np.argmax(drift / m.lengths))
         return (
             f"the drift limits are not met: panel '{self.reference.panels[panel].name}' leaves its outline by "
-            f"{drift[panel].max():.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed; "
+            f"{drift[panel]:.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed; "
             "allow more drift or a larger gap"
         )
 
@@ -104,8 +115,29 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
     """
     began = time.perf_counter()
     how = settings or FitSettings()
-    posed, begin = pose(reference, how)
-    local = fit_local(posed, reference, begin)
+    if not how.automatic:
+        features = [how.feature_for(len(panel.edges)) for panel in reference.panels]
+        return _fit(reference, how, features, began, progress)
+    choice = Choice(reference, how)
+    result = _fit(reference, how, choice.features(), began, progress)
+    # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better.
+    for _ in range(_PROMOTIONS):
+        if result.tolerance_met or not choice.promote(_offenders(result)):
+            break
+        result = _fit(reference, how, choice.features(), began, progress)
+    return result
+
+
+def _fit(
+    reference: Reference,
+    how: FitSettings,
+    features: Sequence[PanelFeature],
+    began: float,
+    progress: Progress | None,
+) -> FitResult:
+    """Fit panels that have these features."""
+    posed, starts = pose(reference, features)
+    local = fit_local(posed, reference, starts, how)
 
     def tell(round_: int, excess: float) -> None:
         if progress is not None:
@@ -133,22 +165,27 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
     )
 
 
-def pose(reference: Reference, settings: FitSettings) -> tuple[Problem, Array]:
-    """The problem of a reference, and the first unknowns (panels, free)."""
-    feature = settings.shape_feature
-    samples = SampleArrays.of(reference)
-    begin = start(reference, feature, samples)
-    return problem(reference, feature, samples, begin), begin.values[:, feature.free]
+def _offenders(result: FitResult) -> NDArray[np.intp]:
+    """Indices of the panels that break a limit, or meet another one in a seam that stays open."""
+    m, how = result.measures, result.settings
+    beyond = np.zeros(len(m.lengths), dtype=bool)
+    if how.max_deviation is not None:
+        beyond |= m.max_deviation > how.max_deviation
+    beyond |= (m.drift_along > how.drift_along * m.lengths) | (m.drift_across > how.drift_across * m.lengths)
+    for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
+        beyond[list(seam.panels)] |= gap > how.gap_tolerance
+    return np.flatnonzero(beyond)
 
 
 def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
-    """Whether every gap and every drift is within its limit; with weights there is none to miss."""
+    """Whether every gap, drift and deviation is within its limit; with weights only a deviation has one to miss."""
+    if settings.max_deviation is not None and measures.max_deviation.max() > settings.max_deviation:
+        return False
     if settings.weights is not None:
         return True
-    lengths = measures.lengths[:, None, None]
     return bool(
         measures.max_corner_gap <= settings.gap_tolerance
         and measures.max_seam_gap <= settings.gap_tolerance
-        and np.all(measures.drift_along <= settings.drift_along * lengths)
-        and np.all(measures.drift_across <= settings.drift_across * lengths)
+        and np.all(measures.drift_along <= settings.drift_along * measures.lengths)
+        and np.all(measures.drift_across <= settings.drift_across * measures.lengths)
     )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from numbers import Integral, Real
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.catalogue import feature
-from cadpanel.features.feature import Feature, Tilt
+from cadpanel.features.catalogue import AUTO, PanelFeature, Tilt, for_corners
+from cadpanel.features.feature import Feature
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""
@@ -50,27 +50,31 @@ class FitSettings:
     """How to fit.
 
     Attributes:
-        feature: name of the shape feature in the catalogue.
+        feature: name of the shape feature in the catalogue; "auto" for the cheapest one that stays within
+            `max_deviation`, panel by panel; or a `Feature` composed by the user.
+        max_deviation: mm that no panel may deviate from its reference where the feature is chosen automatically.
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
         method: "local", "two_stage" or "concurrent".
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
+        min_radius: mm, the tightest that the shop can roll; no cone or cylinder gets tighter anywhere.
         weights: the paper's objective instead of a tolerance, or None.
         restarts: further starts from perturbed local fits; the best result counts.
         seed: of the perturbations.
     """
 
-    feature: str = "plane-cone-plane"
+    feature: str | Feature = "plane-cone-plane"
+    max_deviation: float | None = None
     tilt: Tilt = "free"
     method: Method = "concurrent"
     gap_tolerance: float = 1.0
     drift_along: float = 0.05
     drift_across: float = 0.02
+    min_radius: float = 10.0
     weights: Weights | None = None
     restarts: int = 0
     seed: int = 0
-    shape_feature: Feature = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         """Check every setting.
@@ -78,17 +82,45 @@ class FitSettings:
         Raises:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
-        object.__setattr__(self, "shape_feature", feature(self.feature, tilt=self.tilt))
+        if not isinstance(self.feature, Feature) and self.feature != AUTO:
+            for_corners(self.feature, tilt=self.tilt)
+        if self.tilt not in get_args(Tilt):
+            raise SettingsError(f"tilt must be 'free' or 'fixed', not '{self.tilt}'")
+        if isinstance(self.feature, Feature) and self.tilt == "fixed":
+            raise SettingsError("a composed feature says itself how its ends are cut; leave the tilt out")
         if self.method not in get_args(Method):
             raise SettingsError(f"there is no method '{self.method}'; choose one of: {', '.join(get_args(Method))}")
+        if self.max_deviation is not None:
+            require("largest deviation", self.max_deviation, least=1e-3, unit=" mm")
+        if (self.feature == AUTO) != (self.max_deviation is not None):
+            raise SettingsError(
+                f"the feature '{AUTO}' and a largest deviation go together: the first is chosen by the second"
+            )
         require("gap tolerance", self.gap_tolerance, least=1e-3, unit=" mm")
         require("drift along the strip", self.drift_along, least=1e-4, most=0.5)
         require("drift across the free edges", self.drift_across, least=1e-4, most=0.5)
+        require("least radius", self.min_radius, least=0.1, unit=" mm")
         require_whole("number of restarts", self.restarts, least=0, most=1000)
         require_whole("seed", self.seed, least=0)
         _require_weights(self.weights)
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
+
+    @property
+    def automatic(self) -> bool:
+        """Whether each panel gets the cheapest feature that will do."""
+        return self.feature == AUTO
+
+    @property
+    def feature_name(self) -> str:
+        """The feature as reports call it."""
+        return self.feature.name if isinstance(self.feature, Feature) else self.feature
+
+    def feature_for(self, corners: int) -> PanelFeature:
+        """The feature of a panel with so many corners, where all panels have the same."""
+        if isinstance(self.feature, Feature):
+            return self.feature
+        return for_corners(self.feature, tilt=self.tilt)(corners)
 
 
 def require_whole(what: str, value: object, *, least: int, most: float = math.inf) -> None:

@@ -1,80 +1,57 @@
-"""From unknowns back to panels in millimetres: shapes for the solids, end curves for the measures."""
+"""From unknowns back to panels in millimetres: shapes for the solids, edge curves for the measures."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.walk import Walk
+from cadpanel.features.feature import Feature
+from cadpanel.features.layout import Group
+from cadpanel.features.walk import Walk, cut_planes
 from cadpanel.fitting.problem import Problem
+from cadpanel.geometry.frames import dot
 from cadpanel.geometry.seam import EndCurves
-from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
 from cadpanel.reference.model import Reference
+from cadpanel.terms.state import State
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 
-def panel_shapes(problem: Problem, reference: Reference, unknowns: Array) -> tuple[PanelShape, ...]:
-    """Every panel as a `PanelShape` in the coordinates of the reference's file, mm."""
-    walked = problem.state(unknowns).walked
-    length, axes = problem.place.length, problem.place.axes
-    origins = problem.place.origins + problem.place.centre
-    points = walked.edges.p * length @ np.swapaxes(axes, 1, 2) + origins[:, None]
-    directions = walked.edges.t @ np.swapaxes(axes, 1, 2)
-    normals = walked.edges.n @ np.swapaxes(axes, 1, 2)
-    cut_points, cut_normals = _cuts(walked, axes)
-    cut_points = cut_points * length + origins[:, None]
-    return tuple(
+def panel_shapes(problem: Problem, reference: Reference, unknowns: Array) -> tuple[AnyShape, ...]:
+    """Every panel in the coordinates of the reference's file, mm."""
+    state = problem.state(unknowns)
+    shapes: dict[int, AnyShape] = {}
+    for group, walked in zip(problem.layout.groups, state.walks, strict=True):
+        names = [reference.panels[i].name for i in group.panels]
+        made = _chains if isinstance(group.feature, Feature) else _polygons
+        shapes |= dict(zip(group.panels.tolist(), made(problem, group, walked, names), strict=True))
+    return tuple(shapes[panel] for panel in range(problem.panels))
+
+
+def _chains(problem: Problem, group: Group, walked: Walk, names: list[str]) -> list[AnyShape]:
+    length = problem.place.length
+    turn = np.swapaxes(problem.place.axes[group.panels], 1, 2)
+    origins = problem.place.origins[group.panels] + problem.place.centre
+    points = walked.edges.p * length @ turn + origins[:, None]
+    directions, normals = _unit(walked.edges.t @ turn), _unit(walked.edges.n @ turn)
+    m, s = cut_planes(walked)
+    cut_points = (s[..., None] * m / dot(m, m)[..., None]) * length @ turn + origins[:, None]
+    cut_normals = _unit(m @ turn)
+    return [
         PanelShape(
-            name=panel.name,
-            feature=problem.feature.name,
+            name=name,
+            feature=group.feature.name,
             points=points[i],
-            directions=_unit(directions[i]),
-            normals=_unit(normals[i]),
+            directions=directions[i],
+            normals=normals[i],
             patches=_patches(walked, i, length),
             cut_points=cut_points[i],
             cut_normals=cut_normals[i],
         )
-        for i, panel in enumerate(reference.panels)
-    )
-
-
-def end_curves(problem: Problem, walked: Walk, corners: Array, end: int) -> EndCurves:
-    """One end curve of every panel, in mm from the middle of all panels.
-
-    Args:
-        problem: where the panels' frames stand.
-        walked: the panels.
-        corners: (panels, 2, k + 1, 3) their corners in the panels' own frames, solver's length.
-        end: 0 or 1.
-    """
-    place, edges = problem.place, walked.edges
-    turn = np.swapaxes(place.axes, 1, 2)
-    numbers = np.zeros((len(corners), len(walked.feature.patches), 3))
-    for i, patch in enumerate(walked.feature.patches):
-        if patch.kind != "plane":
-            numbers[:, i] = walked.values[:, walked.feature.patch_slice(i)]
-    cut_points, cut_normals = _cuts(walked, place.axes)
-    return EndCurves(
-        corners=place.to_world(corners[:, end]) * place.length,
-        p=place.to_world(edges.p) * place.length,
-        t=edges.t @ turn,
-        n=edges.n @ turn,
-        radius=numbers[..., 0] * place.length,
-        half_angle=numbers[..., 1],
-        sweep=numbers[..., 2],
-        cut_point=cut_points[:, end] * place.length + place.origins,
-        cut_normal=cut_normals[:, end],
-    )
-
-
-def _cuts(walked: Walk, axes: Array) -> tuple[Array, Array]:
-    """Points (panels, 2, 3) of the cut planes relative to the frames' origins, turned, and their unit normals."""
-    cuts = np.stack([walked.values[:, walked.feature.cut_slice(end)] for end in (0, 1)], axis=1)
-    normals = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
-    square = np.sum(normals**2, axis=-1, keepdims=True)
-    turn = np.swapaxes(axes, 1, 2)
-    return (cuts[..., :1] * normals / square) @ turn, (normals / np.sqrt(square)) @ turn
+        for i, name in enumerate(names)
+    ]
 
 
 def _patches(walked: Walk, panel: int, length: float) -> tuple[Patch, ...]:
@@ -88,6 +65,72 @@ def _patches(walked: Walk, panel: int, length: float) -> tuple[Patch, ...]:
             ConePatch(radius=radius * length, half_angle=float(half_angle), sweep=float(sweep), kind=spec.kind)
         )
     return tuple(patches)
+
+
+def _polygons(problem: Problem, group: Group, walked: Walk, names: list[str]) -> list[AnyShape]:
+    place = problem.place
+    outlines = place.to_world(group.feature.corners(walked).position, group.panels) * place.length + place.centre
+    normals = _unit(walked.anchor.n @ np.swapaxes(place.axes[group.panels], 1, 2))[:, 0]
+    return [
+        PolygonShape(name=name, feature=group.feature.name, outline=outlines[i], normal=normals[i])
+        for i, name in enumerate(names)
+    ]
+
+
+def edge_curves(problem: Problem, state: State, panels: IntArray, edges: IntArray, *, straight: bool) -> EndCurves:
+    """One edge of each of s panels as curves of equally many pieces, mm from the middle of all panels.
+
+    Args:
+        problem: where the panels' frames stand.
+        state: the panels.
+        panels: (s,).
+        edges: (s,) which edge of each; where they are not straight, ends of chains of equally many patches.
+        straight: whether all of them are segments.
+    """
+    return _segments(problem, state, panels, edges) if straight else _ends(problem, state, panels, edges)
+
+
+def _ends(problem: Problem, state: State, panels: IntArray, edges: IntArray) -> EndCurves:
+    place, surfaces = problem.place, state.surfaces
+    pieces = int(surfaces.count[panels[0]])
+    turn = np.swapaxes(place.axes[panels], 1, 2)
+    corners = edges[:, None] * (pieces + 1) + np.arange(pieces + 1)
+    rulings, patches = np.s_[: pieces + 1], np.s_[:pieces]
+    m, s = state.cuts.m[panels, edges], state.cuts.s[panels, edges]
+    return EndCurves(
+        corners=place.to_world(state.corners.position[panels[:, None], corners], panels) * place.length,
+        p=place.to_world(surfaces.ruling_p[panels][:, rulings], panels) * place.length,
+        t=surfaces.ruling_t[panels][:, rulings] @ turn,
+        n=surfaces.ruling_n[panels][:, rulings] @ turn,
+        radius=surfaces.radius[panels][:, patches] * place.length,
+        half_angle=surfaces.half_angle[panels][:, patches],
+        sweep=surfaces.sweep[panels][:, patches],
+        cut_point=place.to_world((s[:, None] * m)[:, None], panels)[:, 0] * place.length,
+        cut_normal=(m[:, None] @ turn)[:, 0],
+    )
+
+
+def _segments(problem: Problem, state: State, panels: IntArray, edges: IntArray) -> EndCurves:
+    place, features = problem.place, problem.layout.feature_of
+    found = [features[p].edges[e] for p, e in zip(panels, edges, strict=True)]
+    corners = np.array([[edge.corners[0], edge.corners[-1]] for edge in found], dtype=np.intp).reshape(-1, 2)
+    # The skin's normal is that of the ruling; a chain's last ruling is its side 1.
+    last = [len(features[p].patches) if edge.name == "side 1" else 0 for p, edge in zip(panels, found, strict=True)]
+    n = (state.surfaces.ruling_n[panels, last][:, None] @ np.swapaxes(place.axes[panels], 1, 2))[:, 0]
+    at = place.to_world(state.corners.position[panels[:, None], corners], panels) * place.length
+    along = _unit(at[:, 1] - at[:, 0])
+    flat = np.zeros((len(panels), 1))
+    return EndCurves(
+        corners=at,
+        p=at,
+        t=np.stack([along, along], axis=1),
+        n=np.stack([n, n], axis=1),
+        radius=flat,
+        half_angle=flat,
+        sweep=flat,
+        cut_point=at[:, 0],
+        cut_normal=along,
+    )
 
 
 def _unit(vectors: Array) -> Array:

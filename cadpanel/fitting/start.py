@@ -1,59 +1,44 @@
-"""Initial values from the reference alone: find the flanges and the blend by their normals, roll a cone between them.
+"""Initial values from the reference alone: cut both ends into the chain's patches by their normals, roll cones between.
 
-All panels at once; panels with fewer samples than others are padded with samples of weight 0.
+All panels of one feature at once.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.errors import PanelError, SettingsError
+from cadpanel.errors import PanelError
+from cadpanel.features.catalogue import PanelFeature
 from cadpanel.features.feature import Feature
+from cadpanel.features.layout import Layout
 from cadpanel.features.walk import walk
+from cadpanel.fitting.frames import Frames, reframe
+from cadpanel.fitting.polygon_start import start_polygons
+from cadpanel.fitting.profile import curved_runs, cut_profile
+from cadpanel.fitting.samples import SampleArrays
 from cadpanel.geometry.frames import cross, dot
-from cadpanel.reference.model import Reference
+from cadpanel.reference.fold import check_corners, check_fold
+from cadpanel.reference.model import PanelReference, Reference
 
 Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.intp]
 
-# Share of the fold over which normals have turned where a flange ends and where the blend's middle begins.
-_FLANGE_SHARE = 0.15
-_BLEND_SHARE = 0.2
+# A curved patch turns by at least this at the start, radians: where it turned by nothing its radius would be unknown.
+_LEAST_SWEEP = 1e-3
+# Places along an end at which its normals are looked at.
+_PLACES = 65
 # A fold below this angle (radians) cannot be told from a flat panel.
 _LEAST_FOLD = np.radians(2.0)
-_LEAST_WEIGHT = 1e-12
+# Half angles of the start stay below this, radians; the ends' widths tell them only roughly.
+_STEEPEST = 0.3
+# The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
+_ASTRAY = np.cos(np.radians(40.0))
 # An end that is nearly straight does not tell its plane's tilt: singular values below this share are left out.
 _LEAST_SINGULAR = 1e-6
-
-
-@dataclass(frozen=True, slots=True)
-class SampleArrays:
-    """All panels' samples, padded to one length.
-
-    Attributes:
-        points, normals: (panels, m, 3), mm.
-        weights: (panels, m) mm^2, 0 for padding.
-    """
-
-    points: Array
-    normals: Array
-    weights: Array
-
-    @staticmethod
-    def of(reference: Reference) -> SampleArrays:
-        """Stack the panels of a reference."""
-        panels = reference.panels
-        most = max(len(panel.points) for panel in panels)
-        points, normals = np.empty((len(panels), most, 3)), np.empty((len(panels), most, 3))
-        weights = np.zeros((len(panels), most))
-        for i, panel in enumerate(panels):
-            own = len(panel.points)
-            points[i, :own], normals[i, :own], weights[i, :own] = panel.points, panel.normals, panel.weights
-            points[i, own:], normals[i, own:] = panel.points[0], panel.normals[0]
-        return SampleArrays(points, normals, weights)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,146 +46,233 @@ class Start:
     """Where the fit begins.
 
     Attributes:
-        origins: (panels, 3) a point on the middle of each fold, mm.
-        axes: (panels, 3, 3) columns b, t, n: across the fold, along it, outwards.
-        values: (panels, N) all numbers of the feature, lengths in units of `length`.
+        origins: (panels, 3) a point on the middle of each panel, mm.
+        axes: (panels, 3, 3) columns b, t, n: across the panel, along it, outwards.
+        unknowns: arrays (panels, size) in the layout's rows, lengths in units of `length`: the best start and, where a
+            feature has curved patches side by side, another one, as it is easy to cut them in the wrong place.
         length: mm, the mean length of a panel.
     """
 
     origins: Array
     axes: Array
-    values: Array
+    unknowns: tuple[Array, ...]
     length: float
 
 
-def start(reference: Reference, feature: Feature, samples: SampleArrays) -> Start:
-    """First values for a chain plane - curved - plane.
+def start(reference: Reference, layout: Layout, samples: SampleArrays, length: float) -> Start:
+    """First values for all panels.
+
+    Args:
+        reference: what is to be approximated.
+        layout: the panels' features, in units of `length`.
+        samples: those of the reference.
+        length: mm.
 
     Raises:
-        PanelError: a panel has no fold that could be told from a flat panel.
-        SettingsError: the feature is another chain.
+        PanelError: a panel has no fold, or not the four corners, that its feature asks for.
     """
-    if [patch.kind == "plane" for patch in feature.patches] != [True, False, True]:
-        raise SettingsError(f"no starting values are known for the feature '{feature.name}'")
-    fold = _find_fold(reference, samples)
-    length = float(np.mean([panel.length for panel in reference.panels]))
-    values = np.zeros((len(reference.panels), len(feature.numbers)))
-    curved = feature.patch_slice(1).start
-    values[:, curved] = fold.radius / length
-    if feature.numbers[curved + 1].fixed is None:
-        values[:, curved + 1] = np.arctan(fold.taper)
-        _tilt_to_taper(fold)
-    values[:, curved + 2] = fold.angle
-    result = Start(fold.origin, np.stack([fold.b, fold.t, fold.n], axis=-1), values, length)
-    _lay_flanges(reference, feature, result)
-    _lay_cuts(reference, feature, result)
-    return result
+    origins, axes = np.zeros((layout.panels, 3)), np.zeros((layout.panels, 3, 3))
+    starts = [np.zeros((layout.panels, layout.size))]
+    if any(_ambiguous(group.feature) for group in layout.groups):
+        starts.append(starts[0].copy())
+    for group in layout.groups:
+        panels = [reference.panels[i] for i in group.panels]
+        if isinstance(group.feature, Feature):
+            _check(panels, reference.source, group.feature)
+            found = _start_chains(panels, group.feature, samples.take(group.panels), length, ways=len(starts))
+        else:
+            found = start_polygons(panels, samples.take(group.panels), length)
+        origins[group.panels], axes[group.panels] = found.origins, found.axes
+        for way, unknowns in enumerate(starts):
+            values = found.values[min(way, len(found.values) - 1)]
+            unknowns[group.panels, : len(group.feature.free)] = values[:, group.feature.free]
+    return Start(origins, axes, tuple(starts), length)
+
+
+def _ambiguous(feature: PanelFeature) -> bool:
+    """Whether curved patches follow each other."""
+    return any(stop - start_ > 1 for start_, stop in curved_runs(feature.curved))
+
+
+def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
+    folds = sum(feature.curved)
+    for panel in panels:
+        check_corners(panel, source, feature.name)
+        if folds:
+            check_fold(panel, source, flanged=folds < len(feature.patches), folds=folds)
 
 
 @dataclass(slots=True)
-class _Fold:
-    """Per panel: a frame on the middle ruling, the fold angle, the normal radius there and how it grows along t."""
+class _Ends:
+    """Both ends of n panels of k patches: where patches begin and end, and by how much the normals turn on them.
 
-    origin: Array
-    b: Array
-    t: Array
-    n: Array
-    angle: Array
-    radius: Array
-    taper: Array
+    Attributes:
+        points, normals: (n, 2, k + 1, 3) at the knots.
+        middle, outward: (n, 2, 3) points and normals in the middle of the anchor patch.
+        widths: (n, 2, k) mm along the end.
+        sweeps: (n, k) radians.
+    """
 
-
-def _find_fold(reference: Reference, samples: SampleArrays) -> _Fold:
-    corners = np.array([panel.corners for panel in reference.panels])
-    chord = _unit(corners[:, 1].mean(axis=1) - corners[:, 0].mean(axis=1))
-    lower = _unit(np.mean([[n[0] for n in panel.end_normals] for panel in reference.panels], axis=1))
-    upper = _unit(np.mean([[n[-1] for n in panel.end_normals] for panel in reference.panels], axis=1))
-    # Twice: the first flanges come from the outline's corners, the second from all samples on them.
-    for _ in range(2):
-        n = _unit(_off(lower + upper, chord))
-        b = cross(chord, n)
-        turning = np.arctan2(_along(samples.normals, b), _along(samples.normals, n))
-        low, high = (np.arctan2(dot(v, b), dot(v, n)) for v in (lower, upper))
-        share = (turning - low[:, None]) / (high - low)[:, None]
-        on_lower, on_upper = samples.weights * (share < _FLANGE_SHARE), samples.weights * (share > 1 - _FLANGE_SHARE)
-        lower, upper = (_mean_normal(samples, w, old) for w, old in ((on_lower, lower), (on_upper, upper)))
-    angle = np.arctan2(np.linalg.norm(cross(lower, upper), axis=-1), dot(lower, upper))
-    for panel, fold in zip(reference.panels, angle, strict=True):
-        if fold < _LEAST_FOLD:
-            raise PanelError(
-                panel.name,
-                f"its faces turn by only {np.degrees(fold):.2f} degrees across the panel, which is no fold to roll; "
-                "take it out of the file or give it a flat feature",
-            )
-    t = _unit(cross(lower, upper))
-    t *= np.sign(dot(t, chord))[:, None]
-    n = _unit(_off(lower + upper, t))
-    b = cross(t, n)
-    origin, radius, taper = _roll(samples, share, (on_lower, on_upper), (lower, upper), t, angle)
-    return _Fold(origin, b, t, n, angle, radius, taper)
+    points: Array
+    normals: Array
+    middle: Array
+    outward: Array
+    widths: Array
+    sweeps: Array
 
 
-def _roll(
-    samples: SampleArrays, share: Array, on: tuple[Array, Array], normals: tuple[Array, Array], t: Array, angle: Array
-) -> tuple[Array, Array, Array]:
-    """Origin on the middle ruling, normal radius and taper from the blend's arc width and the two flange planes."""
-    centre = _weighted_mean(samples.points, samples.weights)
-    z = np.einsum("pmx,px->pm", samples.points - centre[:, None], t)
-    middle = np.abs(share - 0.5) < 0.5 - _BLEND_SHARE
-    extent = np.ptp(z, axis=1) * (1.0 + 1.0 / np.sqrt(np.maximum(1, z.shape[1])))
-    arc = (1.0 - 2.0 * _BLEND_SHARE) * angle
+def _start_chains(
+    panels: Sequence[PanelReference], feature: Feature, samples: SampleArrays, length: float, *, ways: int
+) -> Frames:
+    """Frames and all numbers of the chains; `ways` is 2 where curved patches may be cut in another way, too."""
+    axis = _axes(panels, samples)
+    whole = np.array([panel.corners for panel in panels])
+    found: Frames | None = None
+    for way in range(ways if _ambiguous(feature) else 1):
+        origins, axes, values = _roll(_cut_ends(panels, feature, axis, even=way > 0), panels, feature, length)
+        if found is None:
+            found = Frames(origins, axes, [])
+        else:
+            reframe(feature, values, (origins - found.origins) / length, axes, found.axes)
+        values = _held(feature, values)
+        corners = np.einsum("pesx,pxa->pesa", whole - found.origins[:, None, None], found.axes)
+        _lay_flanges(corners / length, feature, values)
+        values = _held(feature, values)
+        _lay_cuts(panels, feature, found, length, values)
+        found.values.append(_held(feature, values))
+    assert found is not None
+    return found
 
-    def radius_over(half: BoolArray, length: Array) -> Array:
-        radii: Array = np.sum(samples.weights * (middle & half), axis=1) / (arc * length)
-        return radii
 
-    before, after = radius_over(z < 0, 0.5 * extent), radius_over(z >= 0, 0.5 * extent)
-    radius = np.maximum(0.5 * (before + after), 1e-3 * extent)
-    # The taper from two coarse halves is only a hint; the fit finds it.
-    taper = np.clip(0.5 * (after - before) / (0.5 * extent), -0.2, 0.2)
-    # Tangent to both flange planes: its axis lies at the distance of the radius under both.
-    points = [_weighted_mean(samples.points, weights) for weights in on]
-    rows = np.stack([normals[0], normals[1], t], axis=1)
-    right = np.stack(
-        [dot(normals[0], points[0]) - radius, dot(normals[1], points[1]) - radius, dot(t, centre)], axis=-1
+def _roll(ends: _Ends, panels: Sequence[PanelReference], feature: Feature, length: float) -> tuple[Array, Array, Array]:
+    """Frames in the middle of the anchor patches, and the numbers of all patches."""
+    _refuse_without_fold(panels, feature, ends.sweeps)
+    t = _unit(ends.middle[:, 1] - ends.middle[:, 0])
+    n = _unit(_off(ends.outward.sum(axis=1), t))
+    axes = np.stack([cross(t, n), t, n], axis=-1)
+    origins = ends.middle.mean(axis=1)
+    distance = np.linalg.norm(ends.points[:, 1] - ends.points[:, 0], axis=-1)
+    values = np.zeros((len(panels), len(feature.numbers)))
+    for i, curved in enumerate(feature.curved):
+        at = feature.patch_slice(i).start
+        widening = (ends.widths[:, 1, i] - ends.widths[:, 0, i]) / (0.5 * (distance[:, i] + distance[:, i + 1]))
+        width = ends.widths[:, :, i].mean(axis=1)
+        if curved:
+            sweep = ends.sweeps[:, i]
+            values[:, at] = width / sweep / length
+            values[:, at + 1] = np.clip(np.arctan(widening / sweep), -_STEEPEST, _STEEPEST)
+            values[:, at + 2] = sweep
+        else:
+            values[:, at] = width / length
+            values[:, at + 1] = -np.arctan(widening)
+    return origins, axes, values
+
+
+def _held(feature: Feature, values: Array) -> Array:
+    """The values with fixed and tied numbers in their places, and the others within their bounds."""
+    unknowns = np.clip(values[:, feature.free], *feature.bounds())
+    return feature.expand(unknowns)
+
+
+def _axes(panels: Sequence[PanelReference], samples: SampleArrays) -> Array:
+    """(n, 3) the direction about which the normals turn: that in which they spread least.
+
+    On a cone and on the planes tangent to it all normals enclose one angle with the axis, so that it is exact there.
+    """
+    corners = np.array([panel.corners for panel in panels])
+    chord = _unit((corners[:, 1] - corners[:, 0]).mean(axis=1))
+    weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
+    off = samples.normals - np.einsum("pm,pmx->px", weights, samples.normals)[:, None]
+    _, directions = np.linalg.eigh(np.einsum("pm,pmx,pmy->pxy", weights, off, off))
+    least = directions[:, :, 0]
+    least = least * np.where(dot(least, chord) < 0.0, -1.0, 1.0)[:, None]
+    astray = dot(least, chord) < _ASTRAY
+    return np.where(astray[:, None], chord, least)
+
+
+def _cut_ends(panels: Sequence[PanelReference], feature: Feature, axis: Array, *, even: bool) -> _Ends:
+    lines, normals = _evenly(panels)
+    count, _, places, _ = lines.shape
+    n = _unit(_off(normals.sum(axis=(1, 2)), axis))
+    b = cross(axis, n)
+    turned = np.arctan2(np.einsum("peqx,px->peq", normals, b), np.einsum("peqx,px->peq", normals, n))
+    turned = np.unwrap(turned, axis=2)
+    profile = cut_profile(turned.reshape(2 * count, places), feature.curved, even=even)
+    knots = profile.knots.reshape(count, 2, -1)
+    sweeps = np.diff(profile.angles.reshape(count, 2, -1).mean(axis=1), axis=1)
+    sweeps = np.where(np.abs(sweeps) < _LEAST_SWEEP, np.where(sweeps < 0.0, -1.0, 1.0) * _LEAST_SWEEP, sweeps)
+    lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
+    middle = (0.5 * (knots[:, :, feature.anchor] + knots[:, :, feature.anchor + 1])).astype(np.float64)
+    return _Ends(
+        points=_at(lines, knots.astype(np.float64)),
+        normals=_at(normals, knots.astype(np.float64)),
+        middle=_at(lines, middle[..., None])[:, :, 0],
+        outward=_at(normals, middle[..., None])[:, :, 0],
+        widths=np.diff(knots, axis=2) * (lengths / (places - 1))[..., None],
+        sweeps=sweeps,
     )
-    axis_point = np.linalg.solve(rows, right[..., None])[..., 0]
-    outward = _unit(_off(normals[0] + normals[1], t))
-    return axis_point + radius[:, None] * outward, radius, taper
 
 
-def _tilt_to_taper(fold: _Fold) -> None:
-    """Turn the middle ruling about b so that a cone that widens stays tangent to both flanges."""
-    slope = fold.taper * (1.0 / np.cos(0.5 * fold.angle) - 1.0)
-    fold.t = _unit(fold.t - slope[:, None] * fold.n)
-    fold.n = _unit(_off(fold.n, fold.t))
+def _evenly(panels: Sequence[PanelReference]) -> tuple[Array, Array]:
+    """Points and normals (n, 2, _PLACES, 3) at even distances along both ends."""
+    lines, normals = np.empty((len(panels), 2, _PLACES, 3)), np.empty((len(panels), 2, _PLACES, 3))
+    for i, panel in enumerate(panels):
+        for end in (0, 1):
+            line = panel.edges[end]
+            reach = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+            places = np.interp(np.linspace(0.0, reach[-1], _PLACES), reach, np.arange(len(line), dtype=np.float64))
+            low = np.minimum(places.astype(np.intp), len(line) - 2)
+            share = (places - low)[:, None]
+            for target, source in ((lines, line), (normals, panel.edge_normals[end])):
+                target[i, end] = (1.0 - share) * source[low] + share * source[low + 1]
+    return lines, _unit(normals)
 
 
-def _lay_flanges(reference: Reference, feature: Feature, start_: Start) -> None:
-    """Give both flanges the width and the turn that bring their free edges through the reference's corners."""
-    corners = _local(np.array([panel.corners for panel in reference.panels]), start_)
-    edges = walk(feature, start_.values, derivatives=False).edges
-    for side, (patch, ruling) in enumerate(((0, 0), (len(feature.patches) - 1, -1))):
+def _at(lines: Array, places: Array) -> Array:
+    """(n, 2, r, d) values of lines (n, 2, q, d) at places (n, 2, r) between 0 and q - 1."""
+    low = np.clip(np.floor(places).astype(np.intp), 0, lines.shape[2] - 2)
+    share = (places - low)[..., None]
+    before = np.take_along_axis(lines, low[..., None], axis=2)
+    after = np.take_along_axis(lines, low[..., None] + 1, axis=2)
+    return np.asarray((1.0 - share) * before + share * after)
+
+
+def _lay_flanges(corners: Array, feature: Feature, values: Array) -> None:
+    """Give outer flanges the width and the turn that bring their free edges through the corners (n, 2, 2, 3)."""
+    edges = walk(feature, values, derivatives=False).edges
+    last = len(feature.patches) - 1
+    for side, (patch, ruling) in enumerate(((0, 1), (last, last))):
+        if feature.curved[patch] or patch == feature.anchor:
+            continue
         p, b, t = (getattr(edges, axis)[:, ruling, None] for axis in "pbt")
         out = corners[:, :, side] - p
         x, y = dot(out, b), dot(out, t)
         slope = (x[:, 1] - x[:, 0]) / (y[:, 1] - y[:, 0])
-        at_foot = x[:, 0] - slope * y[:, 0]
         way = 1.0 if side == 1 else -1.0
         where = feature.patch_slice(patch).start
-        start_.values[:, where] = way * at_foot
-        start_.values[:, where + 1] = -way * np.arctan(slope)
+        values[:, where] = way * (x[:, 0] - slope * y[:, 0])
+        values[:, where + 1] = -way * np.arctan(slope)
 
 
-def _lay_cuts(reference: Reference, feature: Feature, start_: Start) -> None:
+def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames, length: float, values: Array) -> None:
     """Lay each cut plane through the outline's end."""
     for end in (0, 1):
         where = feature.cut_slice(end).start
-        free = feature.numbers[where + 2].fixed is None
-        for i, panel in enumerate(reference.panels):
-            local = (panel.ends[end] - start_.origins[i]) @ start_.axes[i] / start_.length
-            position, normal = end_plane(local, tilt=free)
-            start_.values[i, where : where + 3] = position, normal[0], normal[2]
+        tilt = feature.numbers[where + 2].fixed is None
+        for i, panel in enumerate(panels):
+            local = (panel.ends[end] - frames.origins[i]) @ frames.axes[i] / length
+            position, normal = end_plane(local, tilt=tilt)
+            values[i, where : where + 3] = position, normal[0], normal[2]
+    if feature.tied:
+        for number, source in feature.tied:
+            values[:, source] = 0.5 * (values[:, source] + values[:, number])
+    if feature.tied or feature.cuts == "square":
+        corners = np.array([panel.corners for panel in panels]).mean(axis=2)
+        local = np.einsum("pex,pxa->pea", corners - frames.origins[:, None], frames.axes) / length
+        for end in (0, 1):
+            where = feature.cut_slice(end).start
+            skew, tilt_ = (values[:, feature.cut_slice(0).start + k] if feature.tied else 0.0 for k in (1, 2))
+            values[:, where] = local[:, end, 1] + skew * local[:, end, 0] + tilt_ * local[:, end, 2]
 
 
 def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:
@@ -214,26 +286,18 @@ def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:
     return float(solution[0]), np.array([solution[1], 1.0, solution[2] if tilt else 0.0])
 
 
-def _local(points: Array, start_: Start) -> Array:
-    shifted = points - start_.origins[:, None, None]
-    local: Array = np.einsum("pesx,pxa->pesa", shifted, start_.axes) / start_.length
-    return local
-
-
-def _mean_normal(samples: SampleArrays, weights: Array, otherwise: Array) -> Array:
-    total = np.einsum("pm,pmx->px", weights, samples.normals)
-    found = weights.sum(axis=1) > _LEAST_WEIGHT
-    return np.where(found[:, None], _unit(np.where(found[:, None], total, otherwise)), otherwise)
-
-
-def _weighted_mean(points: Array, weights: Array) -> Array:
-    mean: Array = np.einsum("pm,pmx->px", weights, points) / np.maximum(weights.sum(axis=1), _LEAST_WEIGHT)[:, None]
-    return mean
-
-
-def _along(vectors: Array, direction: Array) -> Array:
-    components: Array = np.einsum("pmx,px->pm", vectors, direction)
-    return components
+def _refuse_without_fold(panels: Sequence[PanelReference], feature: Feature, sweeps: Array) -> None:
+    """Refuse a panel whose curved patches, between flanges, turn by nothing that could be rolled."""
+    if not any(feature.curved) or all(feature.curved):
+        return
+    folds = np.abs(np.where(feature.curved, sweeps, 0.0)).sum(axis=1)
+    for panel, fold in zip(panels, folds, strict=True):
+        if fold < _LEAST_FOLD:
+            raise PanelError(
+                panel.name,
+                f"its faces turn by only {np.degrees(fold):.2f} degrees across the panel, which is no fold to roll; "
+                "take it out of the file or give it a flat feature",
+            )
 
 
 def _off(vectors: Array, direction: Array) -> Array:

@@ -7,25 +7,22 @@ linear in the depth, so what holds on both holds inside. Millimetres and radians
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from typing import Literal, TypeVar, get_args
 
 import numpy as np
 
 from cadpanel.errors import PanelError
 from cadpanel.geometry.crossing import crosses_itself
+from cadpanel.geometry.flat import check_polygon
+from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH, THICKEST_SHEET, THINNEST_SHEET
 from cadpanel.geometry.sections import AxisFrame, ConeCut, axis_frame, cut_cone, radius_range
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
 
+Shape = TypeVar("Shape", PanelShape, PolygonShape)
 SkinSide = Literal["outer", "inner"]
 
 SMALLEST_RADIUS = 0.1
 """Distance from the axis, mm, below which a skin counts as having reached the apex."""
-THINNEST_SHEET, THICKEST_SHEET = 0.01, 10_000.0
-"""mm; of a thinner sheet the volume cannot be proved to nine digits, and in the end its two faces become one."""
-SMALLEST_LENGTH = 0.1
-"""Shortest edge, mm: along a generatrix, across a flange, along an arc."""
-LARGEST_COORDINATE = 1e7
-"""Farthest corner from the origin, mm; beyond it the CAD kernel's own checks at 1e-7 mm lose their digits."""
 LARGEST_RADIUS = 1e8
 """Largest normal radius, mm; a flatter patch is a plane to within rounding."""
 SMALLEST_CUT_COSINE = math.sin(math.radians(10.0))
@@ -41,19 +38,22 @@ POINT_TOLERANCE = 1e-8
 _ENDS = ("start", "far end")
 
 
-def check_skin(shape: PanelShape) -> None:
+def check_skin(shape: AnyShape) -> None:
     """Refuse a skin that cannot be built exactly.
 
     Raises:
         PanelError: with one reason: not finite, rulings that disagree with the patches, a ruling parallel to a cut
             plane, an apex inside, a section that is no ellipse, cut planes that cross inside, a fold inside out.
     """
+    if isinstance(shape, PolygonShape):
+        check_polygon(shape)
+        return
     _check_numbers(shape)
     _check_walk(shape)
     _check_face(shape, "")
 
 
-def check_buildable(shape: PanelShape, thickness: float, skin_side: SkinSide = "outer") -> None:
+def check_buildable(shape: AnyShape, thickness: float, skin_side: SkinSide = "outer") -> None:
     """Refuse a panel whose sheet of `thickness` mm cannot be built; "outer": the sheet lies at -n, "inner": at +n.
 
     Raises:
@@ -68,12 +68,14 @@ def check_buildable(shape: PanelShape, thickness: float, skin_side: SkinSide = "
     if skin_side not in get_args(SkinSide):
         raise PanelError(shape.name, f"the skin side is '{skin_side}'; give {' or '.join(get_args(SkinSide))}.")
     check_skin(shape)
+    if isinstance(shape, PolygonShape):
+        return
     away = other_face(shape, thickness, skin_side)
     _check_thickness(shape, away, thickness)
     _check_face(away, f" on the other face of the {thickness:g} mm sheet")
 
 
-def other_face(shape: PanelShape, thickness: float, skin_side: SkinSide) -> PanelShape:
+def other_face(shape: Shape, thickness: float, skin_side: SkinSide) -> Shape:
     """The parallel skin on the far face of the sheet."""
     return shape.offset(-thickness if skin_side == "outer" else thickness)
 

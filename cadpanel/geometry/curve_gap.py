@@ -21,6 +21,8 @@ SAMPLES = 33
 ROUNDS = 4
 """Refinements, each on 9 samples over two steps of the one before: 1e-4 of a sample's step in the end."""
 NEWTON_STEPS = 8
+STILL = 1e-10
+"""Radians; after Newton steps no longer than this the next ones, which go with their square, would change nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,12 +90,14 @@ def _to_piece(points: Array, pieces: CurvePieces, index: int) -> Array:
         bend = x * cosine + y * sine + (b2 - a2) * (cosine**2 - sine**2)
         # Away from a minimum the bend may vanish or turn; a step of the circle's then still leads downhill.
         step = slope / np.where(bend > 0.1 * a2, bend, a2)
-        w = np.where(arc, np.clip(w - step, start, stop), w)
+        before, w = w, np.where(arc, np.clip(w - step, start, stop), w)
+        if np.abs(w - before).max(initial=0.0) <= STILL:
+            break
     candidates = np.stack([w, np.broadcast_to(start, w.shape), np.broadcast_to(stop, w.shape)], axis=-1)
     cosine = np.where(arc[..., None], np.cos(candidates), candidates)[..., None]
     sine = np.where(arc[..., None], np.sin(candidates), 0.0)[..., None]
-    feet = center[..., None, :] + cosine * along[..., None, :] + sine * across[..., None, :]
-    return np.asarray(np.linalg.norm(points[..., None, :] - feet, axis=-1).min(axis=-1))
+    off = offset[..., None, :] - cosine * along[..., None, :] - sine * across[..., None, :]
+    return np.asarray(np.sqrt(dot(off, off).min(axis=-1)))
 
 
 def _to_chain(points: Array, pieces: CurvePieces) -> Array:

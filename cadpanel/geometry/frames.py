@@ -17,9 +17,11 @@ Array = NDArray[np.float64]
 
 def cross(a: Array, b: Array) -> Array:
     """Cross product over the last axis, (..., 3); several times faster than numpy.cross on many short vectors."""
-    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
-    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    if a.ndim == b.ndim == 1:  # plain numbers are ten times as fast for a single pair
+        (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+        return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    (ux, uy, uz), (vx, vy, vz) = ((vectors[..., 0], vectors[..., 1], vectors[..., 2]) for vectors in (a, b))
+    return np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], axis=-1)
 
 
 def dot(a: Array, b: Array) -> Array:

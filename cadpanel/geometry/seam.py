@@ -55,6 +55,11 @@ class EndCurves:
         """Patches along a curve."""
         return int(self.radius.shape[1])
 
+    @property
+    def straight(self) -> bool:
+        """Whether every curve is one segment."""
+        return self.patches == 1 and not self.sweep.any()
+
     def follow(self, u: Array) -> tuple[Array, Array]:
         """Points and the skin's normals (s, q, 3) at the parameters u (s, q) in [0, k]."""
         patch = np.clip(np.floor(u).astype(np.intp), 0, self.patches - 1)
@@ -83,8 +88,13 @@ class EndCurves:
 def closest(curves: EndCurves, points: Array) -> tuple[Array, Array]:
     """Distance (s, q) of each point (s, q, 3) to its curve, and the parameter of the closest point.
 
-    Starts at the nearest of many points of the curve and iterates u -= (C - x) . C' / |C'|^2, clipped to the curve.
+    Starts at the nearest of many points of the curve and iterates u -= (C - x) . C' / |C'|^2, clipped to the curve; on
+    a segment the foot of the perpendicular is the closest point, or an end is.
     """
+    if curves.straight:
+        start, span = curves.corners[:, None, 0], (curves.corners[:, 1] - curves.corners[:, 0])[:, None]
+        along = np.clip(dot(points - start, span) / np.maximum(dot(span, span), np.finfo(float).tiny), 0.0, 1.0)
+        return np.linalg.norm(points - start - along[..., None] * span, axis=-1), along
     stations = curves.stations()
     u_all = np.broadcast_to(stations, (len(points), len(stations)))
     on_curve, _ = curves.follow(u_all)
@@ -109,13 +119,15 @@ def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:
     The angle (kink, radians) is taken between the normals at each followed point and at its closest point.
     """
     gap, kink = np.zeros(len(first.corners)), np.zeros(len(first.corners))
+    straight = first.straight and second.straight
     for one, other in ((first, second), (second, first)):
-        stations = one.stations()
+        # The distance from a segment is convex along another one: it is largest at an end.
+        stations = np.array([0.0, 1.0]) if straight else one.stations()
         points, normals = one.follow(np.broadcast_to(stations, (len(one.corners), len(stations))))
         distance, u = closest(other, points)
         facing = other.follow(u)[1]
         angle = np.arctan2(np.linalg.norm(cross(normals, facing), axis=-1), dot(normals, facing))
-        gap = np.maximum(gap, _widest(one, other, stations, distance))
+        gap = np.maximum(gap, distance.max(axis=1) if straight else _widest(one, other, stations, distance))
         kink = np.maximum(kink, angle.max(axis=1))
     return gap, kink
 

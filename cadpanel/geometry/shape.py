@@ -99,3 +99,59 @@ class PanelShape:
             for patch in self.patches
         )
         return replace(self, points=self.points + distance * self.normals, patches=patches)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolygonShape:
+    """A flat panel with any number of corners.
+
+    Attributes:
+        name: the panel's stable name.
+        feature: name of the shape feature.
+        outline: (n, 3) corners, counterclockwise about the normal, in one plane, mm.
+        normal: (3,) unit normal, OUTWARD.
+    """
+
+    name: str
+    feature: str
+    outline: Array
+    normal: Array
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """Its one plane."""
+        return (PlanePatch(),)
+
+    def corners(self) -> Array:
+        """(1, n, 3) the outline as one row, mm."""
+        return self.outline[None]
+
+    def offset(self, distance: float) -> PolygonShape:
+        """The parallel panel at `distance` mm along the normal (negative: inwards)."""
+        return replace(self, outline=self.outline + distance * self.normal)
+
+
+def edge_corners(corners: Array, edge: str) -> Array:
+    """(m, 3) the corners along one edge of a panel, in its order.
+
+    Args:
+        corners: in rows, as shapes give them: (2, k + 1, 3) along both ends, or (1, n, 3) round a polygon.
+        edge: "end 0", "end 1", "side 0" or "side 1"; of a polygon "edge 0" to "edge n - 1".
+
+    Raises:
+        ValueError: the panel has no such edge.
+    """
+    what, _, number = edge.partition(" ")
+    if number.isdecimal():
+        place = int(number)
+        if what == "end" and len(corners) == 2 and place < 2:
+            return np.asarray(corners[place])
+        if what == "side" and len(corners) == 2 and place < 2:
+            return np.asarray(corners[:, -place])
+        if what == "edge" and len(corners) == 1 and place < corners.shape[1]:
+            return np.asarray(corners[0, [place, (place + 1) % corners.shape[1]]])
+    raise ValueError(f"a panel with corners {corners.shape} has no edge '{edge}'")
+
+
+AnyShape = PanelShape | PolygonShape
+"""What a fit hands on: `corners()` in rows, along both ends of a chain or round a polygon."""

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from cadpanel.geometry.sections import axis_frame
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import Array, ConePatch, PanelShape, PolygonShape
 
+Shape = TypeVar("Shape", PanelShape, PolygonShape)
 SMALLEST_HALF_ANGLE = 5e-6
 """Radians; a cone of this half angle differs from the cylinder by 0.01 mm on 4 m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Straightened:
+class Straightened(Generic[Shape]):
     """A panel with its tiny half angles taken out.
 
     Attributes:
@@ -24,16 +26,18 @@ class Straightened:
         largest_move: how far the farthest corner moved, mm.
     """
 
-    shape: PanelShape
+    shape: Shape
     patches: tuple[int, ...]
     largest_move: float
 
 
-def straighten(shape: PanelShape, smallest_half_angle: float = SMALLEST_HALF_ANGLE) -> Straightened:
+def straighten(shape: Shape, smallest_half_angle: float = SMALLEST_HALF_ANGLE) -> Straightened[Shape]:
     """Replace every cone with 0 < |half_angle| <= `smallest_half_angle` by the cylinder that it has halfway along.
 
     The rulings up to the patch stay where they are; the rest of the walk follows the cylinder as a rigid body.
     """
+    if isinstance(shape, PolygonShape):
+        return Straightened(shape=shape, patches=(), largest_move=0.0)
     tiny = tuple(
         index
         for index, patch in enumerate(shape.patches)

@@ -13,17 +13,20 @@ from typing import Literal
 
 import numpy as np
 
+from cadpanel.geometry.flat import polygon_area
 from cadpanel.geometry.frames import cross
 from cadpanel.geometry.sections import ConeCut, axis_frame, cut_cone
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
 
 SWEEP_NODES = 48
 _SWEEP_ABSCISSAE, _SWEEP_WEIGHTS = np.polynomial.legendre.leggauss(SWEEP_NODES)
 _SHEET_ABSCISSAE, _SHEET_WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
-def skin_area(shape: PanelShape) -> float:
+def skin_area(shape: AnyShape) -> float:
     """Area of the trimmed skin, mm2. The shape must be buildable."""
+    if isinstance(shape, PolygonShape):
+        return polygon_area(shape)
     return float(sum(patch_areas(shape)))
 
 
@@ -39,7 +42,7 @@ def patch_areas(shape: PanelShape) -> list[float]:
     return areas
 
 
-def sheet_volume(shape: PanelShape, thickness: float, skin_side: Literal["outer", "inner"] = "outer") -> float:
+def sheet_volume(shape: AnyShape, thickness: float, skin_side: Literal["outer", "inner"] = "outer") -> float:
     """Volume in mm3 of the sheet of `thickness` mm on the side of the skin that `skin_side` leaves free.
 
     With "outer" the skin is the outer face and the sheet lies at -n, with "inner" at +n. The shape must be buildable.

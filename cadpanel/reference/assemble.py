@@ -8,10 +8,13 @@ from numbers import Real
 import numpy as np
 
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.reference.model import PanelReference, RawPanel, Reference
-from cadpanel.reference.orient import orient
+from cadpanel.reference.contacts import after_flipping, find_contacts, refuse_duplicates
+from cadpanel.reference.ends import first_ends, outer_faces
+from cadpanel.reference.model import RawPanel, Reference
+from cadpanel.reference.orient import align, find_seams, orient
 from cadpanel.reference.outline import find_outline
-from cadpanel.reference.seams import align, find_seams, refuse_duplicates
+from cadpanel.reference.polyline import norm
+from cadpanel.reference.sheet import Sheet, sheet
 
 # Ends of panels that meet may lie this far apart in the file, mm.
 SEAM_TOLERANCE = 1.0
@@ -32,18 +35,23 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
 
     Raises:
         ReferenceFileError: there are no panels.
-        PanelError: one of the panels is none, lies on another one, or meets more than one at the same end.
+        PanelError: one of the panels is none, lies on another one, or meets more than one at the same edge.
         SettingsError: the tolerance is no positive length.
     """
     if not _is_length(seam_tolerance):
         raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance!r}.")
     if not raw_panels:
         raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
-    panels = [_panel(raw, source) for raw in raw_panels]
-    _check_tolerance(panels, seam_tolerance)
-    refuse_duplicates(panels, source, seam_tolerance)
-    seams = find_seams(panels, source, seam_tolerance)
-    aligned, seams = align(panels, seams, seam_tolerance)
+    sheets = [sheet(raw, find_outline(raw, source)) for raw in raw_panels]
+    _check_tolerance(sheets, seam_tolerance)
+    refuse_duplicates(sheets, source, seam_tolerance)
+    contacts = find_contacts(sheets, source, seam_tolerance)
+    flipped = outer_faces(sheets, contacts)
+    sheets = [one.other_face() if flip else one for one, flip in zip(sheets, flipped, strict=True)]
+    contacts = after_flipping(contacts, sheets, flipped)
+    first = first_ends(sheets, contacts)
+    panels = [orient(one, end) for one, end in zip(sheets, first, strict=True)]
+    aligned, seams = align(panels, find_seams(panels, sheets, first, contacts), seam_tolerance)
     return Reference(source=source, panels=aligned, seams=seams, seam_tolerance=seam_tolerance)
 
 
@@ -51,19 +59,12 @@ def _is_length(value: object) -> bool:
     return isinstance(value, Real) and 0.0 < float(value) < np.inf
 
 
-def _check_tolerance(panels: Sequence[PanelReference], seam_tolerance: float) -> None:
-    """Refuse a tolerance within which a panel's opposite corners, or its neighbours', could be taken for each other."""
-    corners = np.array([panel.corners for panel in panels])
-    sides = [corners[:, 0] - corners[:, 1], corners[:, :, 0] - corners[:, :, 1]]
-    shortest = np.min([np.linalg.norm(side, axis=-1).min(axis=-1) for side in sides], axis=0)
-    panel = int(shortest.argmin())
+def _check_tolerance(sheets: Sequence[Sheet], seam_tolerance: float) -> None:
+    """Refuse a tolerance within which two corners of a panel could be taken for each other."""
+    shortest = [min(float(norm(side.points[-1] - side.points[0])) for side in one.sides) for one in sheets]
+    panel = int(np.argmin(shortest))
     if seam_tolerance > LARGEST_TOLERANCE * shortest[panel]:
         raise SettingsError(
-            f"The seam tolerance of {seam_tolerance:g} mm is too large for panel '{panels[panel].name}', two corners "
+            f"The seam tolerance of {seam_tolerance:g} mm is too large for panel '{sheets[panel].name}', two corners "
             f"of which are {shortest[panel]:.4g} mm apart: at most {LARGEST_TOLERANCE * shortest[panel]:.4g} mm."
         )
-
-
-def _panel(raw: RawPanel, source: str) -> PanelReference:
-    """Return one panel's reference."""
-    return orient(raw, find_outline(raw, source), source)

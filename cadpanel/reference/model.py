@@ -5,10 +5,12 @@ All lengths are in millimetres, in the coordinates of the file.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+
+from cadpanel.reference.settings import ReferenceSettings
 
 Array = NDArray[np.float64]
 
@@ -41,53 +43,90 @@ class RawPanel:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PanelReference:
-    """One panel's reference: samples, and an outline of four sides, two ends across the fold and two along it.
+class Turning:
+    """How the surface's normals turn along a panel's outline, radians.
 
-    The panel is walked from side 0 to side 1 (across the fold, direction b) and from end 0 to end 1 (along the fold,
-    direction t); normals n point to the convex side and t x n = b in the mean.
+    Attributes:
+        across: from side 0 to side 1, the mean of both ends; positive where the panel is convex outwards.
+        along: largest angle between any two normals on a side.
+        to_and_fro: sum of all turning along the edge on which it is largest, whichever way it goes.
+        slenderness: width of the panel over its length.
+    """
+
+    across: float
+    along: float
+    to_and_fro: float
+    slenderness: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelReference:
+    """One panel's reference: samples, and an outline of n edges.
+
+    With four edges these are end 0, end 1, side 0 and side 1: the panel is walked from side 0 to side 1 (across the
+    fold, direction b) and from end 0 to end 1 (along the fold, direction t); both ends run from side 0 to side 1, both
+    sides from end 0 to end 1. With another number of edges they follow each other counterclockwise about the normals.
+    Normals n point to the outside; that is the convex side of a fold, and the same side all over panels that meet.
 
     Attributes:
         name: the panel's stable name.
         points: (m, 3) samples over all faces, mm.
-        normals: (m, 3) unit normals, all on the convex (outer) side.
+        normals: (m, 3) unit normals, all on the outer side.
         weights: (m,) area that each sample stands for, mm^2.
-        ends: two polylines (q, 3), end 0 and end 1, each from side 0 to side 1, mm.
-        end_normals: (q, 3) unit normals at the points of `ends`.
-        sides: two polylines (q, 3), side 0 and side 1 (the long free edges), each from end 0 to end 1, mm.
+        edges: n polylines (q, 3), mm.
+        edge_normals: n times the (q, 3) unit normals at the points of `edges`.
+        turning: how the normals turn along the outline, None unless it has four edges.
     """
 
     name: str
     points: Array
     normals: Array
     weights: Array
-    ends: tuple[Array, Array]
-    end_normals: tuple[Array, Array]
-    sides: tuple[Array, Array]
+    edges: tuple[Array, ...]
+    edge_normals: tuple[Array, ...]
+    turning: Turning | None = None
+
+    @property
+    def four_sided(self) -> bool:
+        """Whether ends can be told from sides."""
+        return len(self.edges) == 4
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """End 0 and end 1 of a panel with four edges."""
+        return self.edges[0], self.edges[1]
+
+    @property
+    def sides(self) -> tuple[Array, Array]:
+        """Side 0 and side 1 of a panel with four edges."""
+        return self.edges[2], self.edges[3]
 
     @property
     def corners(self) -> Array:
-        """(2, 2, 3) the outline's corners, indexed [end, side], mm."""
-        return np.array([[end[0], end[-1]] for end in self.ends])
+        """The outline's corners, mm: (2, 2, 3), indexed [end, side], of a panel with four edges; else (n, 3)."""
+        if self.four_sided:
+            return np.array([[end[0], end[-1]] for end in self.ends])
+        return np.array([edge[0] for edge in self.edges])
 
     @property
     def length(self) -> float:
-        """Mean distance between the two ends, measured along the two sides' chords, mm."""
-        return float(np.linalg.norm(self.corners[1] - self.corners[0], axis=-1).mean())
+        """Mean length of the sides' chords, from end to end; where there are no ends, of all edges' chords, mm."""
+        chords = self.sides if self.four_sided else self.edges
+        return float(np.mean([np.linalg.norm(chord[-1] - chord[0]) for chord in chords]))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Seam:
-    """Two panels that meet end to end.
+    """Two panels that meet along an edge of each.
 
     Attributes:
         panels: indices of the two panels.
-        ends: which end (0 or 1) of each panel lies on the seam.
-        reversed: True where side 0 of the first panel meets side 1 of the second.
+        edges: which edge of each panel lies on the seam.
+        reversed: True where the two edges run against each other.
     """
 
     panels: tuple[int, int]
-    ends: tuple[int, int]
+    edges: tuple[int, int]
     reversed: bool
 
 
@@ -98,11 +137,15 @@ class Reference:
     Attributes:
         source: name of the file.
         panels: in the order of the file.
-        seams: which panels meet, end to end.
-        seam_tolerance: how far the ends of two panels that meet were allowed to lie apart, mm.
+        seams: which panels meet, edge to edge.
+        seam_tolerance: how far the edges of two panels that meet were allowed to lie apart, mm.
+        notes: what was mended, moved, guessed or left out on the way from the file, one sentence each.
+        settings: how the file was read and cut.
     """
 
     source: str
     panels: tuple[PanelReference, ...]
     seams: tuple[Seam, ...]
     seam_tolerance: float = 1.0
+    notes: tuple[str, ...] = ()
+    settings: ReferenceSettings = field(default_factory=ReferenceSettings)

@@ -1,9 +1,10 @@
-"""From a panel's faces to its outline: one closed loop of free edges, cut into four sides at its corners."""
+"""From a panel's faces to its outline: one closed loop of free edges, cut into sides at its corners."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.errors import PanelError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_lengths, end_tangents, norm, unit
+from cadpanel.reference.polyline import arc_lengths, end_tangents, interpolate, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
@@ -21,18 +22,17 @@ TOUCH_TOLERANCE = 1.0
 TOUCH_PART = 1e-3
 # The outline has a corner where it turns by more than this in the surface, degrees.
 CORNER_ANGLE = 30.0
-CORNERS = 4
-# Corners that a message gives the place of.
-MOST_NAMED = 6
+FEWEST_CORNERS = 3
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6
 # Points on each side of the outline that is handed on.
 OUTLINE_POINTS = 65
+EVEN_PARTS = np.linspace(0.0, 1.0, OUTLINE_POINTS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
-    """One of the outline's four sides: (q, 3) points (mm) and the surface's (q, 3) unit normals, evenly spaced."""
+    """One of the outline's sides: (q, 3) points (mm) and the surface's (q, 3) unit normals, evenly spaced."""
 
     points: Array
     normals: Array
@@ -44,11 +44,11 @@ class Outline:
     """A panel's outline.
 
     Attributes:
-        sides: the four sides in walking order, each beginning where the one before ends.
+        sides: three or more in walking order, each beginning where the one before ends.
         face_signs: for each face 1 or -1, which turns its normals to the side of the first face.
     """
 
-    sides: tuple[Side, Side, Side, Side]
+    sides: tuple[Side, ...]
     face_signs: tuple[float, ...]
 
 
@@ -60,7 +60,7 @@ def find_outline(panel: RawPanel, source: str) -> Outline:
         source: the file's name, for messages.
 
     Raises:
-        PanelError: a face has no area, the faces do not touch, or their outline is not one loop with four corners.
+        PanelError: a face has no area, the faces do not touch, or their outline is not one loop with corners.
     """
     check_faces(panel, source)
     tolerance = min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
@@ -86,8 +86,9 @@ def check_faces(panel: RawPanel, source: str) -> None:
     """
     if not panel.faces:
         raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
+    lengths = iter(arc_lengths([points for face in panel.faces for points in face.edges]))
     for place, face in enumerate(panel.faces, start=1):
-        around = sum(float(lengths[-1]) for lengths in arc_lengths(face.edges))
+        around = sum(float(next(lengths)[-1]) for _ in face.edges)
         if len(face.points) == 0 or float(face.weights.sum()) <= SLIVER * around**2:
             raise PanelError(
                 panel.name,
@@ -200,20 +201,19 @@ def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
     return float(np.min(distances))
 
 
-def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, Side, Side, Side]:
-    """Cut a closed loop of edges into its four sides."""
+def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, ...]:
+    """Cut a closed loop of edges into its sides."""
     corners = np.flatnonzero(_turns(loop) > CORNER_ANGLE).tolist()
-    if len(corners) != CORNERS:
-        places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners[:MOST_NAMED])
+    if len(corners) < FEWEST_CORNERS:
+        places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners)
         raise PanelError(
             name,
             f"in '{source}', its outline has {len(corners)} corners{f' (at {places})' if places else ''} "
-            f"where a panel has {CORNERS}: trim it to two ends and two long edges.",
+            f"where a panel has {FEWEST_CORNERS} or more: trim it to edges that meet in corners.",
         )
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]
-    first, second, third, fourth = (_side(turned[cuts[k] : cuts[k + 1]]) for k in range(CORNERS))
-    return first, second, third, fourth
+    return _sides([turned[start:stop] for start, stop in pairwise(cuts)])
 
 
 def _turns(loop: Sequence[Edge]) -> Array:
@@ -232,15 +232,19 @@ def _turns(loop: Sequence[Edge]) -> Array:
     return turns
 
 
-def _side(edges: Sequence[Edge]) -> Side:
-    """Join consecutive edges into one evenly spaced polyline."""
-    starts = np.concatenate([[0.0], np.cumsum([edge.length for edge in edges])])
-    positions = np.linspace(0.0, starts[-1], OUTLINE_POINTS)
-    borders = np.searchsorted(positions, starts[1:-1]).tolist()
-    values = [
-        edge.at(part - start)
-        for edge, part, start in zip(edges, np.split(positions, borders), starts[:-1].tolist(), strict=True)
-    ]
-    points = np.concatenate([points for points, _ in values])
-    normals = unit(np.concatenate([normals for _, normals in values]))
-    return Side(points=points, normals=normals, length=float(starts[-1]))
+def _sides(groups: Sequence[Sequence[Edge]]) -> tuple[Side, ...]:
+    """Join consecutive edges into evenly spaced polylines, one a group."""
+    lengths, positions = [], []
+    for edges in groups:
+        starts = np.cumsum([0.0, *(edge.length for edge in edges)])
+        even = EVEN_PARTS * starts[-1]
+        borders = [0, *np.searchsorted(even, starts[1:-1]).tolist(), OUTLINE_POINTS]
+        positions += [
+            even[low:high] - start for (low, high), start in zip(pairwise(borders), starts[:-1].tolist(), strict=True)
+        ]
+        lengths.append(float(starts[-1]))
+    edges = [edge for group in groups for edge in group]
+    known = np.hstack([np.concatenate([edge.points for edge in edges]), np.concatenate([e.normals for e in edges])])
+    values = interpolate([edge.lengths for edge in edges], known, positions).reshape(len(groups), OUTLINE_POINTS, 6)
+    points, normals = values[..., :3], unit(values[..., 3:])
+    return tuple(Side(points=points[side], normals=normals[side], length=length) for side, length in enumerate(lengths))

@@ -43,22 +43,29 @@ def arc_lengths(polylines: Sequence[Array]) -> Sequence[Array]:
     return [arc_length(points) for points in polylines]
 
 
-def interpolate(lengths: Array, values: Array, positions: Array) -> Array:
-    """Return the (k, d) values at `positions` on the cubic through the four nearest of the (q, d) `values`.
+def interpolate(lengths: Sequence[Array], values: Array, positions: Sequence[Array]) -> Array:
+    """Return the values at some positions on each of several curves, on the cubic through the four nearest points.
 
     The curve between two points is met to the fourth power of their distance, where straight segments would be off by
     the sagitta.
 
     Args:
-        lengths: (q,) rising positions of the values, q >= 4.
-        values: (q, d) values there.
-        positions: (k,) where to evaluate, within the range of `lengths`.
+        lengths: for each curve the (q,) rising positions of its points, q >= 4.
+        values: (sum of all q, d) values there, curve after curve.
+        positions: for each curve where to evaluate, (k,) within the range of its lengths.
+
+    Returns:
+        (sum of all k, d), curve after curve.
     """
-    first = np.searchsorted(lengths, positions, side="right") - 2
-    np.clip(first, 0, len(lengths) - STENCIL, out=first)
-    stencil = first + np.arange(STENCIL)[:, None]
-    a, b, c, d = lengths[stencil]
-    to_a, to_b, to_c, to_d = positions - a, positions - b, positions - c, positions - d
+    first, start = [], 0
+    for own, wanted in zip(lengths, positions, strict=True):
+        before = np.searchsorted(own, wanted, side="right") - 2
+        first.append(np.minimum(np.maximum(before, 0), len(own) - STENCIL) + start)
+        start += len(own)
+    stencil = np.concatenate(first) + np.arange(STENCIL)[:, None]
+    a, b, c, d = np.concatenate(lengths)[stencil]
+    at = np.concatenate(positions)
+    to_a, to_b, to_c, to_d = at - a, at - b, at - c, at - d
     basis = np.array(
         [
             to_b * to_c * to_d / ((a - b) * (a - c) * (a - d)),

@@ -45,7 +45,7 @@ class Edge:
 
     def at(self, lengths: Array) -> tuple[Array, Array]:
         """Return points and (not quite unit) normals, each (k, 3), at the given arc lengths."""
-        values = interpolate(self.lengths, np.hstack([self.points, self.normals]), lengths)
+        values = interpolate([self.lengths], np.hstack([self.points, self.normals]), [lengths])
         return values[:, :3], values[:, 3:]
 
     def reverse(self) -> Edge:
@@ -63,14 +63,21 @@ class Contact:
 
 def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
     """Return the edges of all faces; those no longer than the tolerance (mm) are points and are left out."""
+    found = [
+        (face, points, normals)
+        for face, samples in enumerate(panel.faces)
+        for points, normals in zip(samples.edges, samples.edge_normals, strict=True)
+    ]
     edges = []
-    for face, samples in enumerate(panel.faces):
-        for points, normals, lengths in zip(
-            samples.edges, samples.edge_normals, arc_lengths(samples.edges), strict=True
-        ):
-            keep = np.concatenate([[True], np.diff(lengths) > SAME_POINT * lengths[-1]])
-            if lengths[-1] > tolerance and keep.sum() >= STENCIL:
-                edges.append(Edge(face, points[keep], normals[keep], lengths[keep]))
+    for (face, points, normals), lengths in zip(found, arc_lengths([points for _, points, _ in found]), strict=True):
+        if lengths[-1] <= tolerance:
+            continue
+        apart = lengths[1:] - lengths[:-1] > SAME_POINT * lengths[-1]
+        if not apart.all():
+            keep = np.concatenate([[True], apart])
+            points, normals, lengths = points[keep], normals[keep], lengths[keep]
+        if len(points) >= STENCIL:
+            edges.append(Edge(face, points, normals, lengths))
     return edges
 
 

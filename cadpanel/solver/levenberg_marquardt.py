@@ -69,6 +69,10 @@ class Bounds:
         clipped: Array = np.clip(unknowns, self.lower, self.upper)
         return clipped
 
+    def hold(self, unknowns: Array) -> bool:
+        """Whether all unknowns are within the bounds."""
+        return bool(np.all((unknowns >= self.lower) & (unknowns <= self.upper)))
+
     def blocked(self, unknowns: Array, gradient: Array) -> BoolArray:
         """(count, size) which unknowns stand on a bound beyond which the cost would fall."""
         at_lower, at_upper = unknowns <= self.lower, unknowns >= self.upper
@@ -124,8 +128,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
     bounds = model.bounds
     unknowns = start.copy() if bounds is None else bounds.clip(start)
     booked, normal = model.linearize(unknowns)
-    mu = np.full(count, damping)
-    growth = np.full(count, 2.0)
+    mu, growth = np.full(count, damping), np.full(count, 2.0)
     done = np.zeros(count, dtype=bool)
     iterations = 0
     while iterations < stopping.iterations and not done.all():
@@ -142,28 +145,33 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         hoped[(hoped <= 0.0) & (per_component(cut) > 0.0)] = np.inf
         trial = unknowns + step
         # Most steps are good, so the next model is worked out at once: it costs little more than the cost alone.
-        cost, ahead = _tried(model, trial)
+        last = iterations == stopping.iterations
+        cost, ahead = _tried(model, trial, last)
         gain = _gain(before, per_component(cost), hoped)
         failed = (gain <= 0.0) & ~done
         if failed.any():
             harm = _gain(pattern.around(booked), pattern.around(cost), pattern.around(promised)) <= 0.0
             trial = np.where((failed[component] & harm)[:, None], unknowns, trial)
-            cost, ahead = _tried(model, trial)
+            cost, ahead = _tried(model, trial, last)
             stuck = failed & ~(per_component(cost) < before)
             if (stuck[component] & ~harm).any() and not stuck.all():
                 trial = np.where(stuck[component, None], unknowns, trial)
-                cost, ahead = _tried(model, trial)
+                cost, ahead = _tried(model, trial, last)
         better = (per_component(cost) < before) & ~done
-        done |= hoped <= stopping.cost * before
-        # Nielsen: shrink smoothly with the gain, grow ever faster on refusals.
-        shrink = np.maximum(1.0 / 3.0, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
-        mu = np.clip(np.where(failed, mu * growth, mu * shrink), _LEAST_DAMPING, _MOST_DAMPING)
-        growth = np.where(failed, np.minimum(growth * 2.0, _MOST_GROWTH), 2.0)
+        mu, growth = _damp(mu, growth, gain, failed)
         # Refused again and again: rounding is all that is left of this component.
-        done |= mu >= _MOST_DAMPING
+        done |= (hoped <= stopping.cost * before) | (mu >= _MOST_DAMPING)
         if better.any():
-            unknowns, booked, normal = trial, cost, ahead
+            unknowns, booked = trial, cost
+            normal = normal if ahead is None else ahead
     return Solution(unknowns, per_component(booked), done, iterations)
+
+
+def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Array, Array]:
+    """Nielsen: damping shrinks smoothly with the gain and grows ever faster on refusals."""
+    shrink = np.maximum(1.0 / 3.0, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
+    mu = np.clip(np.where(failed, mu * growth, mu * shrink), _LEAST_DAMPING, _MOST_DAMPING)
+    return mu, np.where(failed, np.minimum(growth * 2.0, _MOST_GROWTH), 2.0)
 
 
 def _step(
@@ -181,19 +189,24 @@ def _step(
         # Of an unhindered step the damped model promises s . (damping s - gradient) / 2.
         return step, zero if step is None else 0.5 * np.sum(step * (damping * step - normal.gradient), axis=1), zero
     blocked = bounds.blocked(unknowns, normal.gradient)
-    wanted = pattern.solve(normal.without(blocked, pattern.pairs), np.where(blocked, 0.0, damping))
+    if blocked.any():
+        wanted = pattern.solve(normal.without(blocked, pattern.pairs), np.where(blocked, 0.0, damping))
+    else:
+        wanted = pattern.solve(normal, damping)
     if wanted is None:
         return None, zero, zero
+    if not blocked.any() and bounds.hold(unknowns + wanted):
+        return wanted, 0.5 * np.sum(wanted * (damping * wanted - normal.gradient), axis=1), zero
     step = bounds.clip(unknowns + wanted) - unknowns
     bent = np.sum(step * pattern.multiply(normal, step), axis=1)
     cut = np.any(np.abs(step - wanted) > _ROUNDING * np.abs(wanted), axis=1)
     return step, -np.sum(step * normal.gradient, axis=1) - 0.5 * bent, cut.astype(np.float64)
 
 
-def _tried(model: Model, trial: Array) -> tuple[Array, Normal]:
-    """The model at a trial, which may make no sense: its cost is infinite then."""
+def _tried(model: Model, trial: Array, last: bool) -> tuple[Array, Normal | None]:
+    """Cost and model at a trial, which may make no sense: its cost is infinite then. After the last step no model."""
     with np.errstate(all="ignore"):
-        cost, normal = model.linearize(trial)
+        cost, normal = (model.cost(trial), None) if last else model.linearize(trial)
     return np.where(np.isfinite(cost), cost, np.inf), normal
 
 

@@ -7,19 +7,16 @@ assigned anew at every evaluation and none need be kept clear of the patches' bo
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.features.layout import Group, Layout
+from cadpanel.features.skin import assign, patch_distance, patch_distance_inner, patch_outer
 from cadpanel.features.walk import Rulings, Walk
-from cadpanel.geometry.cone import (
-    INNER,
-    beyond,
-    cone_distance,
-    cone_distance_inner,
-    cone_normal,
-    plane_distance,
-    plane_inner,
-)
+from cadpanel.geometry.cone import INNER, plane_distance
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.state import State
@@ -29,6 +26,16 @@ IntArray = NDArray[np.intp]
 
 # Panels worked on together: their samples and derivatives stay in the processor's cache.
 _CHUNK = 64
+
+
+@dataclass(frozen=True, slots=True)
+class _Chunk:
+    """Some panels of one feature: their walk, their samples (3, n, m) and roots of weights (n, m), and who they are."""
+
+    walked: Walk
+    samples: Array
+    roots: Array
+    panels: IntArray
 
 
 class Deviation:
@@ -43,153 +50,117 @@ class Deviation:
         """Keep the arrays."""
         self.samples, self.roots = samples, roots
 
-    def distances(self, walked: Walk) -> tuple[Array, IntArray]:
+    def distances(self, state: State) -> tuple[Array, IntArray]:
         """Signed distances (panels, m) in units of the solver's length, and the patch that each sample belongs to."""
-        patch = assign(walked, self.samples)
-        distance = np.zeros(patch.shape)
-        for i in range(len(walked.feature.patches)):
-            here = _patch_distance(walked, self.samples, i)
-            distance = np.where(patch == i, here, distance)
-        return distance, patch
+        distance, patches = np.zeros(self.roots.shape), np.zeros(self.roots.shape, dtype=np.intp)
+        for chunk in self._chunks(state):
+            patch = assign(chunk.walked, chunk.samples)
+            own = np.zeros(patch.shape)
+            for i in range(len(chunk.walked.feature.patches)):
+                own = np.where(patch == i, patch_distance(chunk.walked, chunk.samples, i), own)
+            distance[chunk.panels], patches[chunk.panels] = own, patch
+        return distance, patches
 
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
         cost = np.zeros(len(self.roots))
-        for chunk in self._chunks():
-            walked, x = _part(state.walked, chunk), self.samples[:, chunk]
-            patch = assign(walked, x)
-            for i in range(len(walked.feature.patches)):
-                distance = _patch_distance(walked, x, i)
-                weighted = np.where(patch == i, self.roots[chunk], 0.0) * distance
-                cost[chunk] += 0.5 * np.einsum("pm,pm->p", weighted, weighted)
+        for chunk in self._chunks(state):
+            patch = assign(chunk.walked, chunk.samples)
+            total = np.zeros(len(chunk.panels))
+            for i in range(len(chunk.walked.feature.patches)):
+                weighted = np.where(patch == i, chunk.roots, 0.0) * patch_distance(chunk.walked, chunk.samples, i)
+                total += 0.5 * np.einsum("pm,pm->p", weighted, weighted)
+            cost[chunk.panels] = total
         return cost
 
     def add_to(self, normal: Normal, state: State) -> Array:
         """See `Term.add_to`; the chain rule is applied to the summed 8 x 8 moments of each patch, not to every row."""
         cost = np.zeros(len(self.roots))
-        free = state.walked.feature.free
-        for chunk in self._chunks():
-            walked, x = _part(state.walked, chunk), self.samples[:, chunk]
-            patch = assign(walked, x)
-            for i in range(len(walked.feature.patches)):
-                distance, inner = _patch_distance_inner(walked, x, i)
-                root = np.where(patch == i, self.roots[chunk], 0.0)
-                distance *= root
-                inner *= root[..., None]
-                cost[chunk] += 0.5 * np.einsum("pm,pm->p", distance, distance)
-                outer = _outer(walked, i)[:, :, free]
-                turned, moment = np.swapaxes(inner, 1, 2), np.swapaxes(outer, 1, 2)
-                normal.gradient[chunk] += (moment @ (turned @ distance[..., None]))[..., 0]
-                normal.diagonal[chunk] += moment @ ((turned @ inner) @ outer)
+        for chunk in self._chunks(state):
+            walked, feature = chunk.walked, chunk.walked.feature
+            patch = assign(walked, chunk.samples)
+            count = len(feature.free)
+            gradient, square = np.zeros((len(chunk.panels), count)), np.zeros((len(chunk.panels), count, count))
+            total = np.zeros(len(chunk.panels))
+            for i in range(len(feature.patches)):
+                root = np.where(patch == i, chunk.roots, 0.0) if len(feature.patches) > 1 else chunk.roots
+                moments = _round_moments if feature.curved[i] else _plane_moments
+                half, slope, bend = moments(walked, chunk.samples, i, root)
+                outer = feature.by_unknowns(patch_outer(walked, i))
+                turned = np.swapaxes(outer, 1, 2)
+                total += half
+                gradient += (turned @ slope[..., None])[..., 0]
+                square += turned @ (bend @ outer)
+            cost[chunk.panels] = total
+            normal.gradient[chunk.panels, :count] += gradient
+            normal.diagonal[chunk.panels, :count, :count] += square
         return cost
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
-        walked, free = state.walked, state.walked.feature.free
-        patch = assign(walked, self.samples)
-        residual = np.zeros(patch.shape)
-        jacobian = np.zeros((*patch.shape, len(free)))
-        for i in range(len(walked.feature.patches)):
-            distance, inner = _patch_distance_inner(walked, self.samples, i)
-            mine = patch == i
-            residual = np.where(mine, distance * self.roots, residual)
-            rows = (inner @ _outer(walked, i)[:, :, free]) * self.roots[..., None]
-            jacobian = np.where(mine[..., None], rows, jacobian)
-        return [Rows(residual, (np.arange(len(patch)),), (jacobian,))]
+        rows = []
+        for chunk in self._chunks(state):
+            walked, feature = chunk.walked, chunk.walked.feature
+            patch = assign(walked, chunk.samples)
+            residual, jacobian = np.zeros(patch.shape), np.zeros((*patch.shape, state.layout.size))
+            for i in range(len(feature.patches)):
+                distance, inner = patch_distance_inner(walked, chunk.samples, i)
+                mine = patch == i
+                residual = np.where(mine, distance * chunk.roots, residual)
+                own = (inner @ feature.by_unknowns(patch_outer(walked, i))) * chunk.roots[..., None]
+                jacobian[..., : own.shape[-1]] = np.where(mine[..., None], own, jacobian[..., : own.shape[-1]])
+            rows.append(Rows(residual, (chunk.panels,), (jacobian,)))
+        return rows
 
-    def _chunks(self) -> list[slice]:
-        return [slice(i, i + _CHUNK) for i in range(0, len(self.roots), _CHUNK)]
+    def _chunks(self, state: State) -> Iterator[_Chunk]:
+        for group, walked in zip(state.layout.groups, state.walks, strict=True):
+            samples, roots = self._own(state.layout, group)
+            for start in range(0, len(group.panels), _CHUNK):
+                part = slice(start, start + _CHUNK)
+                yield _Chunk(_part(walked, part), samples[:, part], roots[part], group.panels[part])
 
-
-def assign(walked: Walk, x: Array) -> IntArray:
-    """(panels, m) the patch of each sample x (3, panels, m).
-
-    Walks outwards from the anchor ruling: a sample that is beyond one ruling may be beyond the next. Asking in this
-    order keeps folds of up to half a turn apart, whose far flange lies behind the near ruling's plane.
-    """
-    anchor, edges, feature = walked.anchor, walked.edges, walked.feature
-    right = beyond(x, anchor.p[:, 0], anchor.b[:, 0])
-    patch = np.full(right.shape, feature.anchor, dtype=np.intp)
-    passed = right
-    for i in range(feature.anchor + 1, len(feature.patches)):
-        passed = passed & beyond(x, edges.p[:, i], edges.b[:, i])
-        patch += passed
-    passed = ~right
-    for i in range(feature.anchor, 0, -1):
-        passed = passed & ~beyond(x, edges.p[:, i], edges.b[:, i])
-        patch -= passed
-    return patch
+    def _own(self, layout: Layout, group: Group) -> tuple[Array, Array]:
+        if len(layout.groups) == 1:
+            return self.samples, self.roots
+        return self.samples[:, group.panels], self.roots[group.panels]
 
 
-def skin_normals(walked: Walk, x: Array, patch: IntArray) -> Array:
-    """(panels, m, 3) the skin's unit normals at the foot points of samples x (3, panels, m) on their patches."""
-    normals = np.empty((*patch.shape, 3))
-    for i, spec in enumerate(walked.feature.patches):
-        p, t, n = _carrier(walked, i)
-        if spec.kind == "plane":
-            here = np.broadcast_to(n[:, None], normals.shape)
-        else:
-            start = walked.feature.patch_slice(i).start
-            here = cone_normal(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
-        normals = np.where((patch == i)[..., None], here, normals)
-    return normals
+def _round_moments(walked: Walk, x: Array, patch: int, root: Array) -> tuple[Array, Array, Array]:
+    """Half the squares (n,), gradient (n, 8) and J^T J (n, 8, 8) by the inner numbers of a cone or cylinder."""
+    distance, inner = patch_distance_inner(walked, x, patch)
+    distance *= root
+    inner *= root[..., None]
+    turned = np.swapaxes(inner, 1, 2)
+    return 0.5 * np.einsum("pm,pm->p", distance, distance), (turned @ distance[..., None])[..., 0], turned @ inner
 
 
-def _part(walked: Walk, chunk: slice) -> Walk:
+def _plane_moments(walked: Walk, x: Array, patch: int, root: Array) -> tuple[Array, Array, Array]:
+    """The same for a plane, whose rows -(x cross n), -n are linear in (x, 1): four sums of samples make its moments."""
+    p, n = walked.carriers.p[:, patch], walked.carriers.n[:, patch]
+    distance = root * plane_distance(x, p, n)
+    lifted = np.empty((*root.shape, 4))
+    for axis in range(3):
+        np.multiply(x[axis], root, out=lifted[..., axis])
+    lifted[..., 3] = root
+    turned = np.swapaxes(lifted, 1, 2)
+    rows = np.zeros((len(p), INNER, 4))
+    # n cross x, written as a matrix on x.
+    rows[:, 0, 1], rows[:, 0, 2] = -n[:, 2], n[:, 1]
+    rows[:, 1, 0], rows[:, 1, 2] = n[:, 2], -n[:, 0]
+    rows[:, 2, 0], rows[:, 2, 1] = -n[:, 1], n[:, 0]
+    rows[:, 3:6, 3] = -n
+    slope = (rows @ (turned @ distance[..., None]))[..., 0]
+    return 0.5 * np.einsum("pm,pm->p", distance, distance), slope, rows @ (turned @ lifted) @ np.swapaxes(rows, 1, 2)
+
+
+def _part(walked: Walk, part: slice) -> Walk:
     """The same walk for some of its panels."""
+    if len(walked.values) <= _CHUNK:
+        return walked
 
     def cut(rulings: Rulings) -> Rulings:
-        twist = None if rulings.twist is None else rulings.twist[chunk]
-        return Rulings(rulings.p[chunk], rulings.b[chunk], rulings.t[chunk], rulings.n[chunk], twist)
+        twist = None if rulings.twist is None else rulings.twist[part]
+        return Rulings(rulings.p[part], rulings.b[part], rulings.t[part], rulings.n[part], twist)
 
     w = walked
-    return Walk(w.feature, w.values[chunk], cut(w.anchor), cut(w.edges), cut(w.carriers), cut(w.arcs))
-
-
-def _carrier(walked: Walk, patch: int) -> tuple[Array, Array, Array]:
-    carriers = walked.carriers
-    return carriers.p[:, patch], carriers.t[:, patch], carriers.n[:, patch]
-
-
-def _patch_distance(walked: Walk, x: Array, patch: int) -> Array:
-    p, t, n = _carrier(walked, patch)
-    if walked.feature.patches[patch].kind == "plane":
-        return plane_distance(x, p, n)
-    start = walked.feature.patch_slice(patch).start
-    return cone_distance(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
-
-
-def _patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Array]:
-    p, t, n = _carrier(walked, patch)
-    if walked.feature.patches[patch].kind == "plane":
-        return plane_distance(x, p, n), plane_inner(x, n)
-    start = walked.feature.patch_slice(patch).start
-    return cone_distance_inner(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
-
-
-def _outer(walked: Walk, patch: int) -> Array:
-    """(panels, 8, N) how the patch's eight inner numbers follow the feature's numbers."""
-    panels = np.arange(len(walked.values))
-    start = walked.feature.patch_slice(patch).start if walked.feature.patches[patch].kind != "plane" else None
-    return patch_outer(
-        walked, panels, np.full(len(panels), patch), None if start is None else np.full(len(panels), start)
-    )
-
-
-def patch_outer(walked: Walk, panels: IntArray, patch: IntArray, start: IntArray | None) -> Array:
-    """(groups, 8, N) how the eight inner numbers of one patch of each of some panels follow the feature's numbers.
-
-    Args:
-        walked: the panels, walked with derivatives.
-        panels: (groups,) which panel.
-        patch: (groups,) which of its patches.
-        start: (groups,) where the patch's radius stands among the numbers (its half angle follows), None for planes.
-    """
-    if walked.carriers.twist is None:
-        raise ValueError("the state was walked without derivatives")
-    outer = np.zeros((len(panels), INNER, walked.values.shape[1]))
-    outer[:, :6] = walked.carriers.twist[panels, patch]
-    if start is not None:
-        outer[np.arange(len(panels)), 6, start] = 1.0
-        outer[np.arange(len(panels)), 7, start + 1] = 1.0
-    return outer
+    return Walk(w.feature, w.values[part], cut(w.anchor), cut(w.edges), cut(w.carriers), cut(w.arcs))

@@ -6,21 +6,43 @@ two directions therefore have limits of their own. Without them the gap can be g
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.geometry.frames import dot
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.hold import Hold
 from cadpanel.terms.rows import Rows, add_rows
-from cadpanel.terms.state import State
+from cadpanel.terms.state import State, slopes
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
 
 # Weight of a squared drift against the mean squared deviation: 100 mm of drift count like 1 mm of deviation.
 LEAST_PULL = 1e-4
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limited:
+    """Which corners are limited in one direction, and what of their drift counts.
+
+    Attributes:
+        corners: (panels, L) their places among the panels' corners.
+        part: (panels, L, d, 3) rows that take from a drift what is limited; zero where a panel has fewer corners.
+    """
+
+    corners: IntArray
+    part: Array
+
+    def take(self, panels: IntArray) -> Limited:
+        """Those of some panels, as many to a panel as they need."""
+        part = self.part[panels]
+        held = part.any(axis=(0, 2, 3))
+        return Limited(corners=self.corners[panels][:, held], part=part[:, held])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Outline:
     """The reference's corners as the drift limits see them.
 
@@ -30,22 +52,27 @@ class Outline:
     strip, so that a corner may slide along an end that runs askew.
 
     Attributes:
-        corners: (panels, 2, k + 1, 3) points on the reference's ends [end, ruling] in the panels' own frames and the
-            solver's length; the first and the last are the outline's corners.
-        along: (panels, 2, k + 1, 3) unit direction of the strip there; that of the free edge at the outer corners.
-        gauge: (panels, 2, k + 1, 3) vectors whose inner product with a drift is the drift along the strip: `along`
-            itself at the outer corners, at the inner ones the normal m of the end's plane over m . along.
+        corners: (panels, corners, 3) points on the reference's outline in the panels' own frames and the solver's
+            length: its corners, and between them points on its ends.
+        along: all corners, one number each: the drift along the strip.
+        across: outer corners, three numbers each: the drift across the free edge. A panel whose ends cannot be told
+            from its sides has only these, and they are its whole drift.
+        sided: (panels,) whether ends can be told from sides.
     """
 
-    def __init__(self, corners: Array, along: Array, end_normals: Array) -> None:
-        """Besides the attributes takes the normals (panels, 2, 3) of planes through the reference's ends."""
-        self.corners, self.along = corners, along
-        self.gauge = along.copy()
-        inner = along[:, :, 1:-1]
-        self.gauge[:, :, 1:-1] = end_normals[:, :, None] / dot(end_normals[:, :, None], inner)[..., None]
+    corners: Array
+    along: Limited
+    across: Limited
+    sided: NDArray[np.bool_]
+
+    def take(self, panels: IntArray) -> Outline:
+        """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""
+        along, across = self.along.take(panels), self.across.take(panels)
+        count = 1 + max(int(limited.corners.max(initial=0)) for limited in (along, across))
+        return Outline(corners=self.corners[panels, :count], along=along, across=across, sided=self.sided[panels])
 
     def drift(self, state: State) -> Array:
-        """(panels, 2, k + 1, 3) from the reference's corners to the panels'."""
+        """(panels, corners, 3) from the reference's corners to the panels'."""
         return state.corners.position - self.corners
 
 
@@ -59,19 +86,16 @@ class DriftLimit:
     def __init__(self, outline: Outline, limit: Array, *, across: bool) -> None:
         """`limit` (panels,) in units of the solver's length."""
         self.outline = outline
-        rulings = outline.corners.shape[2]
-        self._rulings = np.array([0, rulings - 1]) if across else np.arange(rulings)
-        along = outline.along[:, :, self._rulings]
-        gauge = outline.gauge[:, :, self._rulings][..., None, :]
-        # Rows that take from a drift what is limited: one number along the strip, three components across it.
-        self._part = np.eye(3) - along[..., :, None] * gauge if across else gauge
-        held = 2 * len(self._rulings)
+        self.limited = outline.across if across else outline.along
+        self._rows = np.arange(len(limit))[:, None]
+        held = self.limited.corners.shape[1]
         self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, least=LEAST_PULL)
 
     def vectors(self, state: State) -> Array:
-        """(panels, corners, 1 or 3) the part of the corners' drift that is limited."""
-        drift = self.outline.drift(state)[:, :, self._rulings]
-        return (self._part @ drift[..., None]).reshape(len(drift), -1, self._part.shape[-2])
+        """(panels, L, d) the part of the corners' drift that is limited."""
+        drift = self.outline.drift(state)[self._rows, self.limited.corners]
+        part: Array = (self.limited.part @ drift[..., None])[..., 0]
+        return part
 
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
@@ -81,16 +105,14 @@ class DriftLimit:
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
-        if state.corners.jacobian is None:
-            raise ValueError("the state was walked without derivatives")
         roots = self.hold.roots()[..., None]
         residual = roots * self.vectors(state)
         panels, corners, size = residual.shape
-        moved = self._part @ state.corners.jacobian[:, :, self._rulings][..., state.walked.feature.free]
-        jacobian = roots[..., None] * moved.reshape(panels, corners, size, -1)
-        jacobian = jacobian.reshape(panels, corners * size, -1)
+        weighted = roots[..., None] * self.limited.part
+        jacobian = weighted @ slopes(state.corners)[self._rows, self.limited.corners]
+        jacobian = jacobian.reshape(panels, corners * size, jacobian.shape[-1])
         return [Rows(residual.reshape(panels, -1), (np.arange(panels),), (jacobian,))]
 
     def add_to(self, normal: Normal, state: State) -> Array:
         """See `Term.add_to`."""
-        return add_rows(self.rows(state), normal, len(self._part))
+        return add_rows(self.rows(state), normal, len(self._rows))

@@ -1,4 +1,4 @@
-"""Gaps between the corners of neighbours, and where seams and panels stand."""
+"""Gaps between the corners of neighbours, and where panels stand."""
 
 from __future__ import annotations
 
@@ -11,33 +11,11 @@ from numpy.typing import NDArray
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.hold import Hold
 from cadpanel.terms.rows import Rows, add_rows, booked_cost
-from cadpanel.terms.state import State
+from cadpanel.terms.seams import SeamBatch
+from cadpanel.terms.state import State, slopes
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Seams:
-    """Seams as index arrays, each with the lower panel first.
-
-    Attributes:
-        panels: (seams, 2).
-        ends: (seams, 2) which end of each panel.
-        reversed: (seams,) True where side 0 of one meets side 1 of the other.
-        pair: (seams,) which pair of coupled blocks.
-    """
-
-    panels: IntArray
-    ends: IntArray
-    reversed: NDArray[np.bool_]
-    pair: IntArray
-
-    def in_first_order(self, values: Array) -> Array:
-        """Values (seams, R, ...) of the second panels' points, put in the order of the first panels' points."""
-        if self.reversed.any():
-            values[self.reversed] = values[self.reversed, ::-1]
-        return values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,14 +40,23 @@ class Placement:
         flat = points.reshape(len(points), math.prod(points.shape[1:-1]), 3)
         return (flat @ np.swapaxes(axes, 1, 2) + origins[:, None, :]).reshape(points.shape)
 
+    def carry(self, points: Array, source: IntArray, target: IntArray) -> Array:
+        """Points (g, q, 3) of the frames `source` (g,), in the frames `target` (g,)."""
+        local: Array = (self.to_world(points, source) - self.origins[target, None] / self.length) @ self.axes[target]
+        return local
+
+    def turn(self, source: IntArray, target: IntArray) -> Array:
+        """(g, 3, 3) which turns vectors of the frames `source` into the frames `target`."""
+        return np.swapaxes(self.axes[target], 1, 2) @ self.axes[source]
+
 
 class CornerGap:
-    """Holds corresponding corners of the two panels at every seam within the tolerance: Table 1's measure."""
+    """Holds corresponding corners of the two panels at every seam of a batch within a tolerance: Table 1's measure."""
 
-    def __init__(self, seams: Seams, place: Placement, *, corners: int, tolerance: float) -> None:
-        """Hold `corners` on every seam within `tolerance`, in units of the solver's length."""
+    def __init__(self, seams: SeamBatch, place: Placement, *, tolerance: float) -> None:
+        """Hold the corners that meet within `tolerance`, in units of the solver's length."""
         self.seams, self.place = seams, place
-        self.hold = Hold(np.full((len(seams.panels), corners), tolerance), weight=1.0, least=1e-9)
+        self.hold = Hold(np.full(seams.corners[:, 0].shape, tolerance), weight=1.0, least=1e-9)
 
     def vectors(self, state: State) -> Array:
         """(seams, corners, 3) from the second panel's corner to the first's."""
@@ -83,28 +70,21 @@ class CornerGap:
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
         groups = len(self.seams.panels)
-        if not groups:
-            return []
         roots = self.hold.roots()[..., None]
         residual = (roots * self.vectors(state)).reshape(groups, -1)
         jacobians = (roots[..., None] * self._jacobian(state, 0), -roots[..., None] * self._jacobian(state, 1))
         flat = tuple(part.reshape(*residual.shape, -1) for part in jacobians)
-        panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
-        return [Rows(residual, panels, flat, self.seams.pair)]
+        return [Rows(residual, (self.seams.panels[:, 0], self.seams.panels[:, 1]), flat, self.seams.pair)]
 
     def add_to(self, normal: Normal, state: State) -> Array:
         """See `Term.add_to`."""
         return add_rows(self.rows(state), normal, len(self.place.origins))
 
     def _position(self, state: State, which: int) -> Array:
-        panels, ends = self.seams.panels[:, which], self.seams.ends[:, which]
-        position = self.place.to_world(state.corners.position[panels, ends], panels)
-        return self.seams.in_first_order(position) if which == 1 else position
+        panels, corners = self.seams.panels[:, which], self.seams.corners[:, which]
+        return self.place.to_world(state.corners.position[panels[:, None], corners], panels)
 
     def _jacobian(self, state: State, which: int) -> Array:
-        if state.corners.jacobian is None:
-            raise ValueError("the state was walked without derivatives")
-        panels, ends = self.seams.panels[:, which], self.seams.ends[:, which]
-        free = state.walked.feature.free
-        turned = self.place.axes[panels][:, None] @ state.corners.jacobian[panels, ends][..., free]
-        return self.seams.in_first_order(turned) if which == 1 else turned
+        panels, corners = self.seams.panels[:, which], self.seams.corners[:, which]
+        turned: Array = self.place.axes[panels][:, None] @ slopes(state.corners)[panels[:, None], corners]
+        return turned

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.walk import Points, Walk, pierce
+from cadpanel.features.catalogue import PanelFeature
+from cadpanel.features.layout import Layout
+from cadpanel.features.walk import Points, Walk
+from cadpanel.terms.surfaces import CutPlanes, Surfaces, cut_planes_of, surfaces_of
 
 Array = NDArray[np.float64]
 
@@ -18,17 +22,63 @@ class State:
     """The panels at one set of unknowns; points are worked out when a term first asks for them.
 
     Attributes:
-        walked: rulings and their twists, in the panels' frames, lengths in units of the problem's length.
+        layout: which panels have which feature.
+        walks: one a group: rulings and their twists, in the panels' frames, lengths in units of the solver's length.
     """
 
-    walked: Walk
+    layout: Layout
+    walks: tuple[Walk, ...]
+
+    @property
+    def differentiated(self) -> bool:
+        """Whether derivatives can be asked for."""
+        return self.walks[0].carriers.twist is not None
 
     @cached_property
     def corners(self) -> Points:
-        """Corners (panels, 2, k + 1, 3): every bounding ruling pierces both cut planes."""
-        return pierce(self.walked, self.walked.edges)
+        """Corners (panels, corners, 3), and their derivatives (panels, corners, 3, size) by the unknowns."""
+        return self._points(lambda feature, walked: feature.corners(walked))
 
     @cached_property
     def arcs(self) -> Points:
-        """Points inside the conic arcs of both ends (panels, 2, arcs, 3)."""
-        return pierce(self.walked, self.walked.arcs)
+        """Points inside the conic arcs of the ends (panels, arcs, 3), and their derivatives."""
+        return self._points(lambda feature, walked: feature.arcs(walked))
+
+    @cached_property
+    def boundary(self) -> Points:
+        """Corners and arc points after each other, and their derivatives."""
+        position = np.concatenate([self.corners.position, self.arcs.position], axis=1)
+        if self.corners.jacobian is None or self.arcs.jacobian is None:
+            return Points(position, None)
+        return Points(position, np.concatenate([self.corners.jacobian, self.arcs.jacobian], axis=1))
+
+    @cached_property
+    def surfaces(self) -> Surfaces:
+        """The patches of all panels."""
+        return surfaces_of(self.layout, self.walks)
+
+    @cached_property
+    def cuts(self) -> CutPlanes:
+        """The planes that cut the ends of all panels."""
+        return cut_planes_of(self.layout, self.walks)
+
+    def _points(self, of: Callable[[PanelFeature, Walk], Points]) -> Points:
+        found = [of(group.feature, walked) for group, walked in zip(self.layout.groups, self.walks, strict=True)]
+        position = self.layout.gather([points.position for points in found])
+        slopes = [
+            group.feature.by_unknowns(points.jacobian)
+            for group, points in zip(self.layout.groups, found, strict=True)
+            if points.jacobian is not None
+        ]
+        return Points(position, self.layout.gather(slopes) if len(slopes) == len(found) else None)
+
+
+def slopes(points: Points) -> Array:
+    """The derivatives of points.
+
+    Raises:
+        ValueError: the state was walked without derivatives.
+    """
+    if points.jacobian is None:
+        raise ValueError("the state was walked without derivatives")
+    return points.jacobian

@@ -45,7 +45,7 @@ def strip() -> list[PanelShape]:
     return [replace(moved(folded_panel(), (i * (1000.0 + GAP), 0.0, 0.0)), name=f"P{i}") for i in range(3)]
 
 
-SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), ends=(1, 0), gap=GAP) for i in range(2)]
+SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), edges=("end 1", "end 0"), gap=GAP) for i in range(2)]
 
 
 class Delivery:
@@ -60,8 +60,8 @@ class Delivery:
         for path, shapes in ((self.panels_step, self.solids), (self.skins_step, self.skins)):
             write_step(path, [(name, shape, None) for name, shape in shapes.items()], title=path.stem)
 
-    def certify(self, seams=SEAMS):
-        return certify(self.panels_step, self.skins_step, self.expected, seams)
+    def certify(self, seams=SEAMS, helper=None):
+        return certify(self.panels_step, self.skins_step, self.expected, seams, helper)
 
 
 @pytest.fixture
@@ -193,7 +193,7 @@ def test_a_seam_wider_than_stated_fails(delivery):
 
 
 def test_a_seam_of_an_unknown_panel_fails(delivery):
-    found = delivery.certify([ExpectedSeam(panels=("P0", "P9"), ends=(1, 0))])
+    found = delivery.certify([ExpectedSeam(panels=("P0", "P9"), edges=("end 1", "end 0"))])
     assert not found.holds
     assert found.seam_gaps == (np.inf,)
 
@@ -209,6 +209,15 @@ def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
     monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     assert delivery.certify() == alone
+
+
+def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch):
+    alone = delivery.certify()
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    with inspection_pool.second_interpreter(inspection_pool.WORTHWHILE_PANELS) as helper:
+        assert helper is not None
+        helper.begin(delivery.skins_step)
+        assert delivery.certify(helper=helper) == alone
 
 
 @pytest.mark.parametrize("dies", ["at once", "over the skins", "over the panels"])

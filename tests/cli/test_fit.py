@@ -13,9 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.files import write_solids
@@ -62,8 +65,10 @@ def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
 
 
 def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
-    options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --thickness 5 --skin-side inner --schema AP214"
-    options += " --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
+    options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --skin-side inner"
+    options += (
+        " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
+    )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code == 0, answer.err
     settings = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["settings"]
@@ -71,11 +76,14 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
     del settings["cadpanel_version"]
     assert settings == {
         "feature": "plane-cylinder-plane",
+        "composition": None,
+        "max_deviation": None,
         "tilt": "free",
         "method": "concurrent",
         "gap_tolerance": 3.0,
         "drift_along": 0.04,
         "drift_across": 0.015,
+        "min_radius": 25.0,
         "weights": None,
         "restarts": 1,
         "seed": 7,
@@ -224,6 +232,15 @@ def saddle(u: Array, v: Array) -> Array:
     return np.stack([x, y, 1e-3 * (x**2 - y**2)], axis=-1)
 
 
+def flat(u: Array, v: Array) -> Array:
+    return np.stack([500.0 * u, 2000.0 * v, 0.0 * u], axis=-1)
+
+
+def three_corners() -> TopoDS_Shape:
+    outline = BRepBuilderAPI_MakePolygon(gp_Pnt(), gp_Pnt(900.0, 0.0, 0.0), gp_Pnt(0.0, 300.0, 0.0), True)
+    return BRepBuilderAPI_MakeFace(gp_Pln(), outline.Wire()).Face()
+
+
 def bad_files(folder: Path, good: Path) -> dict[str, tuple[Path, str]]:
     text = good.read_text(encoding="utf-8")
     ball = BRepPrimAPI_MakeSphere(1000.0)
@@ -238,6 +255,8 @@ def bad_files(folder: Path, good: Path) -> dict[str, tuple[Path, str]]:
         "solid": (write_products(folder / "s.step", [("block", BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Shape())]), "block"),
         "sphere": (write_products(folder / "b.step", [("ball", sphere)]), "ball"),
         "saddle": (write_products(folder / "h.step", [("horse", kernel_face(saddle))]), "horse"),
+        "flat": (write_products(folder / "f.step", [("pane", kernel_face(flat))]), "pane"),
+        "three corners": (write_products(folder / "t.step", [("gore", three_corners())]), "3 corners"),
         "twice": (write_products(folder / "d.step", [("one", kernel_lip(Lip())), ("two", kernel_lip(Lip()))]), "two"),
         "thick": (good, "N-0"),
     }
@@ -248,7 +267,11 @@ def bad_files(folder: Path, good: Path) -> dict[str, tuple[Path, str]]:
 
 
 @pytest.mark.parametrize(
-    "what", ["missing", "folder", "not STEP", "empty", "truncated", "solid", "sphere", "saddle", "twice", "thick"]
+    "what",
+    [
+        *("missing", "folder", "not STEP", "empty", "truncated", "solid", "sphere", "saddle", "flat", "three corners"),
+        *("twice", "thick"),
+    ],
 )
 def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
     run: Run, lip_step: Path, tmp_path: Path, what: str

@@ -91,7 +91,7 @@ def a_report() -> ReportModel:
         seams=(
             SeamModel(
                 panels=("Süd 1", "Süd 2"),
-                ends=(1, 0),
+                edges=("end 1", "end 0"),
                 reversed=False,
                 corner_gaps=(0.1, 0.05, 0.05, 0.1),
                 max_corner_gap=0.1,

@@ -99,13 +99,15 @@ def test_a_delivery_with_slender_cones_holds_its_proof(tmp_path: Path) -> None:
     lone = replace(result.reference, panels=result.reference.panels[:1], seams=())
     measures = replace(
         result.measures,
-        corner_gaps=np.zeros((0, 4)),
+        corner_gaps=(),
         seam_gap=np.zeros(0),
         kink=np.zeros(0),
         overall_rms=float(result.measures.rms_deviation[0]),
         **{name: getattr(result.measures, name)[:1] for name in OF_PANELS},
     )
-    one = replace(result, reference=lone, shapes=(slender(result.shapes[0]),), measures=measures)
+    chain = result.shapes[0]
+    assert isinstance(chain, PanelShape)
+    one = replace(result, reference=lone, shapes=(slender(chain),), measures=measures)
     report = deliver(one, tmp_path / "out")
     assert report.certificate.face_kinds["cylinder"] == 2
     assert report.panels[0].notes

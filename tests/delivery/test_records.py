@@ -147,7 +147,7 @@ def put(place: str, key: str, value: object) -> Callable[[dict[str, Any]], None]
         (put("reference", "panels", 3), "the reference counts 3 panels, the list 2"),
         (put("reference", "seams", 0), "the reference counts 0 seams, the list 1"),
         (put("seams.0", "panels", ["Süd 1", "Nord"]), "a seam names the panel 'Nord', which is not in the list"),
-        (put("seams.0", "ends", [0, 2]), "seams.0.ends.1"),
+        (put("seams.0", "edges", ["end 0", "end 2"]), "seams.0.edges.1"),
     ],
 )
 def test_a_wrong_report_is_refused_in_one_sentence(

@@ -8,11 +8,10 @@ from hypothesis import strategies as st
 from cadpanel.errors import PanelError
 from cadpanel.fitting.measures import measure
 from cadpanel.fitting.methods import fit_local
-from cadpanel.fitting.result import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import ConePatch
-from tests.known_panels import alone, flipped, moved, renumbered
+from tests.known_panels import alone, flipped, moved, posed, renumbered
 from tests.shapes import folded_panel, random_panel
 
 # Millimetres on panels of 2 m.
@@ -28,8 +27,8 @@ PANELS = 8
 def local(reference, **how):
     """The locally fitted shapes, and their measures."""
     settings_ = FitSettings(method="local", **how)
-    problem, begin = pose(reference, settings_)
-    found = fit_local(problem, reference, begin)
+    problem, starts = posed(reference, settings_)
+    found = fit_local(problem, reference, starts)
     return panel_shapes(problem, reference, found.unknowns), measure(problem, reference, found.unknowns)
 
 

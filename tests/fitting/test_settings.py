@@ -6,6 +6,9 @@ from typing import Any
 import pytest
 
 from cadpanel.errors import SettingsError
+from cadpanel.features.catalogue import CATALOGUE, feature, polygon
+from cadpanel.features.feature import Feature
+from cadpanel.features.patches import Cone, Plane
 from cadpanel.fitting.settings import FitSettings, Weights
 
 NUMBERS = ("gap_tolerance", "drift_along", "drift_across", "restarts", "seed")
@@ -97,3 +100,48 @@ def test_words_that_are_not_known_are_refused_with_those_that_are(name, value):
 def test_local_fits_take_no_weights():
     with pytest.raises(SettingsError, match="takes no weights"):
         FitSettings(method="local", weights=Weights())
+
+
+@pytest.mark.parametrize("name", [*CATALOGUE, "cone-spline-3", "planar-polygon"])
+def test_every_name_of_the_catalogue_is_a_feature_of_four_cornered_panels(name):
+    how = FitSettings(feature=name)
+    assert (how.feature_name, how.automatic) == (name, False)
+    assert how.feature_for(4).name == name
+
+
+def test_a_polygon_has_as_many_corners_as_its_panel():
+    how = FitSettings(feature="planar-polygon")
+    assert [how.feature_for(corners).corner_count for corners in (3, 4, 5, 8)] == [3, 4, 5, 8]
+    assert how.feature_for(5) == polygon(5)
+
+
+def test_a_composed_feature_is_taken_as_it_is():
+    composed = Feature(Plane(width=200.0), Cone(), Plane(), name="bracket")
+    how = FitSettings(feature=composed)
+    assert how.feature_for(4) is composed
+    assert (how.feature_name, how.automatic) == ("bracket", False)
+
+
+def test_the_tilt_holds_the_cuts_of_a_named_feature_and_a_composed_one_says_it_itself():
+    assert FitSettings(tilt="fixed").feature_for(4) == feature("plane-cone-plane", tilt="fixed")
+    assert FitSettings(tilt="fixed").feature_for(4) != feature("plane-cone-plane")
+    upright = Feature(Plane(), Cone(), Plane(), cuts="upright")
+    assert FitSettings(feature=upright).tilt == "free"
+    with pytest.raises(SettingsError, match="leave the tilt out"):
+        FitSettings(feature=upright, tilt="fixed")
+
+
+def test_the_automatic_feature_and_the_largest_deviation_go_together():
+    how = FitSettings(feature="auto", max_deviation=5.0)
+    assert (how.automatic, how.feature_name) == (True, "auto")
+    for alone in ({"feature": "auto"}, {"max_deviation": 5.0}, {"feature": "cone", "max_deviation": 5.0}):
+        only: dict[str, Any] = alone
+        with pytest.raises(SettingsError, match="go together"):
+            FitSettings(**only)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, "5"])
+def test_a_largest_deviation_that_is_none_is_refused(value):
+    how: dict[str, Any] = {"feature": "auto", "max_deviation": value}
+    with pytest.raises(SettingsError, match="largest deviation must be"):
+        FitSettings(**how)

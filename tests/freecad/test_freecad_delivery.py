@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from cadpanel.delivery.build import build_panels
 from cadpanel.delivery.deliver import deliver
+from cadpanel.delivery.files import write_solids
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
 from cadpanel.delivery.report import ReportModel, read_report
+from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.features.catalogue import feature
+from cadpanel.geometry.shape import AnyShape
 from tests.delivered import fitted
 from tests.freecad.importer import import_with_freecad
+from tests.instances import NAMES, random_polygon, random_shapes
 
 pytestmark = pytest.mark.freecad
 
@@ -67,3 +74,16 @@ def test_skins_have_two_planes_and_one_cone_and_the_areas_of_the_report(folder: 
         assert thing["solids"] == 0
         assert Counter(thing["face_types"]) == {"Plane": 2, "Cone": 1}
         assert thing["area"] == pytest.approx(panel.area, rel=1e-9)
+
+
+def test_polygons_and_every_feature_arrive_as_valid_solids_of_their_volume(tmp_path: Path) -> None:
+    shapes: list[AnyShape] = [random_polygon(1, corners) for corners in (3, 5, 6)]
+    shapes += [replace(random_shapes(feature(name), 2, 1)[0], name=name) for name in NAMES]
+    built = build_panels(shapes, SheetSettings())
+    write_solids(tmp_path / PANELS, built, "all")
+    solids = import_with_freecad(tmp_path / PANELS)
+    assert [thing["label"] for thing in solids] == [shape.name for shape in shapes]
+    for thing, panel in zip(solids, built, strict=True):
+        assert (thing["solids"], thing["valid"], thing["closed"]) == (1, True, True)
+        assert thing["volume"] == pytest.approx(panel.volume, rel=1e-9)
+    assert [Counter(thing["face_types"]) for thing in solids[:3]] == [{"Plane": 5}, {"Plane": 7}, {"Plane": 8}]

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import PanelReference, RawPanel
-from tests.reference_shapes import Lip, flipped, moved, raw_panel, sampled_face, with_edges
+from tests.reference_shapes import Lip, moved, raw_panel, sampled_face, shuffled
 
 CUTS = ((0.0, 3.0), (0.0, 1.0, 2.0, 3.0), (0.0, 0.4, 1.0, 1.5, 2.0, 2.7, 3.0))
 CLOSE = 1e-6  # mm
@@ -30,22 +30,12 @@ def one(panel: RawPanel) -> PanelReference:
     return assemble([panel], "test.step").panels[0]
 
 
-def shuffled(panel: RawPanel, seed: int) -> RawPanel:
-    """Shuffle a panel's faces and edges, walk some edges backwards and turn some normals over."""
-    random = np.random.default_rng(seed)
-    faces = []
-    for index in random.permutation(len(panel.faces)):
-        face = panel.faces[index]
-        face = with_edges(face, random.permutation(4).tolist(), (random.random(4) < 0.5).tolist())
-        faces.append(flipped(face) if random.random() < 0.5 else face)
-    return replace(panel, faces=tuple(faces))
-
-
 def assert_same(first: PanelReference, second: PanelReference, tolerance: float = CLOSE) -> None:
     np.testing.assert_allclose(first.corners, second.corners, atol=tolerance)
     np.testing.assert_allclose(first.ends, second.ends, atol=tolerance)
     np.testing.assert_allclose(first.sides, second.sides, atol=tolerance)
-    np.testing.assert_allclose(first.end_normals, second.end_normals, atol=max(tolerance, 1e-4) / 20.0)
+    for one_, other in zip(first.edge_normals[:2], second.edge_normals[:2], strict=True):
+        np.testing.assert_allclose(one_, other, atol=max(tolerance, 1e-4) / 20.0)
 
 
 def assert_handed(panel: PanelReference) -> None:
@@ -62,7 +52,7 @@ def assert_handed(panel: PanelReference) -> None:
 @settings(max_examples=40, deadline=None)
 def test_order_and_direction_of_faces_and_edges_change_nothing(lip, seed):
     panel = raw_panel(lip)
-    straight, mixed = one(panel), one(shuffled(panel, seed))
+    straight, mixed = one(panel), one(shuffled(panel, np.random.default_rng(seed)))
     assert_same(straight, mixed)
     order = [np.lexsort(reference.points.T) for reference in (straight, mixed)]
     np.testing.assert_allclose(straight.normals[order[0]], mixed.normals[order[1]], atol=1e-12)
@@ -78,14 +68,19 @@ def test_panel_is_laid_out_right_handed_with_normals_outside(lip):
     # Outside of a fold the normals point away from its inside, which is where the middle of its points lies.
     assert np.average(np.einsum("md,md->m", panel.normals, panel.points - middle), weights=panel.weights) > 0.0
     np.testing.assert_allclose(np.linalg.norm(panel.normals, axis=1), 1.0, atol=1e-12)
-    np.testing.assert_allclose(np.linalg.norm(panel.end_normals, axis=2), 1.0, atol=1e-12)
+    for normals in panel.edge_normals:
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("cuts", CUTS)
 @given(lip=lips, seed=seeds)
 @settings(max_examples=10, deadline=None)
 def test_one_face_and_three_and_six_are_the_same_panel(cuts, lip, seed):
-    assert_same(one(raw_panel(lip)), one(shuffled(raw_panel(lip, cuts=cuts), seed)), tolerance=INTERPOLATED)
+    assert_same(
+        one(raw_panel(lip)),
+        one(shuffled(raw_panel(lip, cuts=cuts), np.random.default_rng(seed))),
+        tolerance=INTERPOLATED,
+    )
 
 
 @given(lip=lips, seed=seeds, distance=st.sampled_from([0.0, 1e3, 1e6, 1e9]))
@@ -101,8 +96,8 @@ def test_moving_the_panel_moves_its_reference(lip, seed, distance):
     turned = np.linalg.norm(there.corners[0, 0] - corners[0, 0]) > 1.0
     tolerance = CLOSE + 1e-9 * distance
     np.testing.assert_allclose(there.corners, corners[::-1, ::-1] if turned else corners, atol=tolerance)
-    outside = rotation @ still.end_normals[int(turned)][-int(turned)]
-    assert there.end_normals[0][0] @ outside == pytest.approx(1.0, abs=1e-6)
+    outside = rotation @ still.edge_normals[int(turned)][-int(turned)]
+    assert there.edge_normals[0][0] @ outside == pytest.approx(1.0, abs=1e-6)
 
 
 def test_faces_that_meet_in_a_t_junction_are_one_panel():
@@ -128,60 +123,6 @@ def test_sharp_fold_between_two_planes_has_no_corner_at_the_fold():
     assert one(panel).length == pytest.approx(2000.0)
 
 
-def square(height):
-    """Return a surface of 2 m by 2 m with the given height over x and y from -1 to 1."""
-
-    def surface(u, v):
-        x, y = 2.0 * u - 1.0, 2.0 * v - 1.0
-        return np.stack([1000.0 * x, 1000.0 * y, 1000.0 * height(x, y)], axis=-1)
-
-    return surface
-
-
-@pytest.mark.parametrize(
-    "height",
-    [
-        lambda x, y: np.sqrt(9.0 - x**2 - y**2),
-        lambda x, y: np.sqrt(9.0 - x**2 - (0.5 * y) ** 2 - 0.75 * y**2),
-        lambda x, y: 0.3 * (x**2 - y**2),
-        lambda x, y: 0.3 * x * y,
-        lambda x, y: 0.25 * (x**2 + 0.8 * y**2),
-    ],
-)
-def test_sphere_and_saddle_are_refused_by_name(height):
-    panel = RawPanel(name="dome", faces=(sampled_face(square(height), (0.0, 1.0)),))
-    with pytest.raises(PanelError, match=r"Panel 'dome': in 'test.step', it curves both ways like a sphere or"):
-        one(panel)
-
-
-@pytest.mark.parametrize("aspect", [1.0, 2.0, 3.0])
-def test_sphere_is_refused_whatever_its_aspect(aspect):
-    def surface(u, v):
-        east, north = np.radians(20.0) * aspect * (u - 0.5), np.radians(20.0) * (v - 0.5)
-        return 3000.0 * np.stack([np.cos(north) * np.cos(east), np.cos(north) * np.sin(east), np.sin(north)], axis=-1)
-
-    with pytest.raises(PanelError, match="like a sphere or a saddle"):
-        one(RawPanel(name="globe", faces=(sampled_face(surface, (0.0, 1.0)),)))
-
-
-def test_cylinder_over_the_same_square_passes():
-    panel = RawPanel(name="vault", faces=(sampled_face(square(lambda x, _: np.sqrt(9.0 - x**2)), (0.0, 1.0)),))
-    assert one(panel).length == pytest.approx(2000.0)
-
-
-def test_flat_sheet_is_refused():
-    with pytest.raises(PanelError, match="it is flat"):
-        one(RawPanel(name="flat", faces=(sampled_face(square(lambda x, _: 0.0 * x), (0.0, 1.0)),)))
-
-
-def test_sheet_that_bends_to_and_fro_is_not_called_flat():
-    def wave(u, v):
-        return np.stack([2000.0 * v, 500.0 * u, 200.0 * np.sin(2.0 * np.pi * u / 3.0)], axis=-1)
-
-    with pytest.raises(PanelError, match=r"bends to and fro like an S .* divide it where the bend changes sides"):
-        one(raw_panel(wave))
-
-
 def test_faces_apart_are_refused_and_touching_ones_pass():
     lip = Lip()
     faces = sampled_face(lip, (0.0, 1.0)), sampled_face(lip, (1.0, 2.0))
@@ -202,19 +143,13 @@ def test_hole_is_refused():
     assert one(RawPanel(name="lip", faces=tuple(cells))).length > 0.0
 
 
-def test_outline_with_a_notch_is_refused_with_its_corners():
-    cells = [sampled_face(Lip(), u, v) for u in ((0.0, 1.0), (1.0, 3.0)) for v in ((0.0, 0.6), (0.6, 1.0))]
-    with pytest.raises(PanelError, match=r"its outline has 6 corners \(at "):
-        one(RawPanel(name="lip", faces=tuple(cells[1:])))
-
-
 def test_round_outline_is_refused():
     def disc(u, v):
         return np.stack([u * np.cos(2.0 * np.pi * v), u * np.sin(2.0 * np.pi * v), 0.1 * u**2], axis=-1) * 1000.0
 
     face = sampled_face(disc, (0.1, 1.0))
     rim = replace(face, edges=face.edges[1:2], edge_normals=face.edge_normals[1:2])
-    with pytest.raises(PanelError, match="its outline has 0 corners where a panel has 4"):
+    with pytest.raises(PanelError, match="its outline has 0 corners where a panel has 3 or more"):
         one(RawPanel(name="disc", faces=(rim,)))
 
 

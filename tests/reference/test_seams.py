@@ -5,23 +5,25 @@ from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.assemble import assemble
-from tests.reference_shapes import Lip, lens, moved, raw_panel, raw_strip, ring, strip
+from tests.reference_shapes import Lip, lens, moved, raw_panel, raw_strip, ring, shuffled, strip
 
 STRIP = raw_strip(strip(6))
 RINGS = {2: raw_strip(lens()), 3: raw_strip(ring(3)), 8: raw_strip(ring(8))}
 
 
 def named_seams(reference):
-    """Return each seam as a set of (panel name, end)."""
+    """Return each seam as a set of (panel name, edge)."""
     return {
-        frozenset((reference.panels[panel].name, end) for panel, end in zip(seam.panels, seam.ends, strict=True))
+        frozenset((reference.panels[panel].name, edge) for panel, edge in zip(seam.panels, seam.edges, strict=True))
         for seam in reference.seams
     }
 
 
 def assert_seams_close(reference, tolerance=1.0):
     for seam in reference.seams:
-        first, second = (reference.panels[panel].ends[end] for panel, end in zip(seam.panels, seam.ends, strict=True))
+        first, second = (
+            reference.panels[panel].edges[edge] for panel, edge in zip(seam.panels, seam.edges, strict=True)
+        )
         np.testing.assert_allclose(first, second[::-1] if seam.reversed else second, atol=tolerance)
 
 
@@ -38,7 +40,7 @@ def test_file_order_changes_nothing_but_the_order(order):
 
 def test_along_a_strip_end_1_meets_end_0_of_the_next():
     reference = assemble(STRIP, "a.step")
-    assert [(seam.panels, seam.ends, seam.reversed) for seam in reference.seams] == [
+    assert [(seam.panels, seam.edges, seam.reversed) for seam in reference.seams] == [
         ((k, k + 1), (1, 0), False) for k in range(5)
     ]
     assert_seams_close(reference)
@@ -52,9 +54,25 @@ def test_ring_closes_in_any_file_order(count, seed):
     order = np.random.default_rng(seed).permutation(count)
     reference = assemble([RINGS[count][k] for k in order], "ring.step")
     assert len(reference.seams) == count
-    # The two halves of a lens lie over each other: at their common ends the strip turns back on itself.
-    assert all(set(seam.ends) == {0, 1} and seam.reversed == (count == 2) for seam in reference.seams)
+    assert all(set(seam.edges) == {0, 1} and not seam.reversed for seam in reference.seams)
     assert_seams_close(reference)
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=10, deadline=None)
+def test_two_panels_that_lie_over_each_other_have_their_outer_faces_away_from_each_other(order, seed):
+    """A lens turns back on itself at its ends: one half is convex outwards, the other is the hollow under it."""
+    random = np.random.default_rng(seed)
+    reference = assemble([shuffled(RINGS[2][k], random) for k in order], "lens.step")
+    upper, lower = sorted(reference.panels, key=lambda panel: panel.name)
+    assert upper.turning is not None
+    assert lower.turning is not None
+    assert np.degrees([upper.turning.across, lower.turning.across]) == pytest.approx([90.0, -90.0], abs=1.0)
+    apart = np.average(upper.points, axis=0, weights=upper.weights) - np.average(
+        lower.points, axis=0, weights=lower.weights
+    )
+    assert apart @ (upper.weights @ upper.normals) > 0.0 > apart @ (lower.weights @ lower.normals)
 
 
 def test_panels_that_do_not_touch_have_no_seam():
@@ -95,7 +113,7 @@ def test_ends_that_meet_only_in_part_are_no_seam():
     assert assemble([STRIP[0], short], "a.step").seams == ()
 
 
-def test_third_panel_at_one_end_is_refused_with_all_names():
+def test_third_panel_at_one_edge_is_refused_with_all_names():
     lip = Lip(start=2000.0, twist=6.0, taper=0.1)
 
     def branch(u, v):
@@ -103,7 +121,7 @@ def test_third_panel_at_one_end_is_refused_with_all_names():
         return points + 300.0 * (v**2)[..., None] * np.array([0.0, 0.0, 1.0])
 
     panels = [STRIP[0], STRIP[1], raw_panel(branch, "branch")]
-    with pytest.raises(PanelError, match=r"along one and the same end: a seam joins two") as caught:
+    with pytest.raises(PanelError, match=r"along one and the same edge: a seam joins two") as caught:
         assemble(panels, "a.step")
     assert all(f"'{name}'" in str(caught.value) for name in ("lip 0", "lip 1", "branch"))
     assert len(assemble([STRIP[0], panels[2]], "a.step").seams) == 1

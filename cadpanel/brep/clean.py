@@ -1,0 +1,146 @@
+"""What is mended in a file's faces before they are cut, each with a note, and what is refused with a remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.Standard import Standard_Failure
+from scipy.spatial import cKDTree
+
+from cadpanel.brep.model import ModelFace
+from cadpanel.brep.patch import Patch, patch_of
+from cadpanel.brep.sampling import sample_faces
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.model import FaceSamples
+from cadpanel.reference.polyline import arc_lengths, distances_to_polylines
+
+Array = NDArray[np.float64]
+
+# A face whose area is less than this part of its boundary's length squared is a line.
+SLIVER = 1e-6
+# A face of no more than this width, in mm, cannot be seen and is no part of a panel.
+HAIR = 0.05
+# Points of a face that are compared to tell whether it lies on another one.
+COMPARED = 16
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SkinFace:
+    """A face that is part of the skin.
+
+    Attributes:
+        source: the face as the file has it.
+        patch: its parameter range and boundary.
+        samples: points and normals on it.
+        area: mm^2.
+        size: diagonal of the box around it, mm.
+    """
+
+    source: ModelFace
+    patch: Patch
+    samples: FaceSamples
+    area: float
+    size: float
+
+    @property
+    def number(self) -> int:
+        """Its place in the file, from 1."""
+        return self.source.number
+
+
+def skin_faces(
+    faces: Sequence[ModelFace], source: str, tolerance: float
+) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
+    """Measure faces, leaving out those without width and those that lie on another one.
+
+    Args:
+        faces: what is chosen of the file.
+        source: the file's name.
+        tolerance: within which a face lies on another one, mm.
+
+    Returns:
+        The faces that stay, and a note on each that does not.
+
+    Raises:
+        ReferenceFileError: a face cannot be evaluated, or none is left.
+    """
+    notes: list[str] = []
+    measured = []
+    for face in faces:
+        skin = _measure(face, source)
+        if skin is None:
+            notes.append(f"Face {face.number} of '{source}' has no area and is left out.")
+            continue
+        around = sum(float(lengths[-1]) for lengths in arc_lengths(skin.samples.edges))
+        width = 2.0 * skin.area / around if around > 0.0 else np.inf
+        if skin.area <= SLIVER * around**2 or width < HAIR:
+            notes.append(f"Face {face.number} of '{source}' is only {width:.2g} mm wide and is left out.")
+            continue
+        measured.append(skin)
+    kept, doubled = _without_doubles(measured, source, tolerance)
+    if not kept:
+        raise ReferenceFileError(f"'{source}' holds no face with an area: export the faces of the skin again.")
+    return kept, (*notes, *doubled)
+
+
+def _measure(face: ModelFace, source: str) -> SkinFace | None:
+    try:
+        (samples,) = sample_faces(face.face)
+        patch = patch_of(face.face)
+    except Standard_Failure as error:
+        raise ReferenceFileError(
+            f"Face {face.number} of '{source}' cannot be evaluated by the CAD kernel ({error}): repair and export it."
+        ) from error
+    arrays = (samples.points, samples.normals, samples.weights, *samples.edges, *samples.edge_normals)
+    if not all(np.isfinite(array).all() for array in arrays):
+        raise ReferenceFileError(
+            f"Face {face.number} of '{source}' has points that are not numbers: repair it and export again."
+        )
+    if not len(samples.points):
+        return None
+    points = np.concatenate([samples.points, *samples.edges])
+    return SkinFace(
+        source=face,
+        patch=patch,
+        samples=samples,
+        area=float(samples.weights.sum()),
+        size=float(np.linalg.norm(np.ptp(points, axis=0))),
+    )
+
+
+def _without_doubles(
+    faces: Sequence[SkinFace], source: str, tolerance: float
+) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
+    """Leave out each face that covers the same surface as one before it."""
+    if len(faces) < 2:
+        return tuple(faces), ()
+    centres = np.array([face.samples.weights @ face.samples.points / face.area for face in faces])
+    reach = max(tolerance, 1e-6 * max(face.size for face in faces))
+    dropped: dict[int, int] = {}
+    for first, second in sorted(cKDTree(centres).query_pairs(reach)):
+        if first not in dropped and second not in dropped and _alike(faces[first], faces[second], tolerance):
+            dropped[second] = first
+    notes = tuple(
+        f"Face {faces[second].number} of '{source}' lies on face {faces[first].number} and is left out."
+        for second, first in sorted(dropped.items())
+    )
+    return tuple(face for index, face in enumerate(faces) if index not in dropped), notes
+
+
+def _alike(first: SkinFace, second: SkinFace, tolerance: float) -> bool:
+    """Tell whether two faces have the same boundary and the same area."""
+    if abs(first.area - second.area) > 1e-3 * first.area + tolerance * np.sqrt(first.area):
+        return False
+    for one, other in ((first, second), (second, first)):
+        if not one.samples.edges or not other.samples.edges:
+            return bool(one.samples.edges) == bool(other.samples.edges)
+        points = np.concatenate([edge[:: max(1, len(edge) // COMPARED)] for edge in one.samples.edges])
+        distances = np.min(
+            [distances_to_polylines(points[None], edge[None])[0] for edge in other.samples.edges], axis=0
+        )
+        if distances.max() > tolerance:
+            return False
+    return True

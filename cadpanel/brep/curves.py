@@ -1,0 +1,118 @@
+"""Loose curves of a file: those that cut a surface, or the spine along which stations are measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.Standard import Standard_Failure
+from OCP.TopoDS import TopoDS_Edge
+
+from cadpanel.brep.formats.units import shifted
+from cadpanel.brep.loading import load_model
+from cadpanel.brep.model import ModelCurve
+from cadpanel.errors import ReferenceFileError
+
+Array = NDArray[np.float64]
+
+POINTS = 257
+# How closely one curve must begin where another one ends to follow it, as a part of the whole length.
+FOLLOWS = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """A curve of a file: its place there (from 1), its edge, and (q, 3) points along it, mm."""
+
+    number: int
+    name: str
+    edge: TopoDS_Edge
+    points: Array
+
+    @property
+    def called(self) -> str:
+        """How a message speaks of it."""
+        return f"curve {self.number}" + (f" ('{self.name}')" if self.name else "")
+
+
+def load_curves(path: Path, origin: Array, millimetres: float | None) -> tuple[Curve, ...]:
+    """The loose curves of a file, in the coordinates of a reference.
+
+    Args:
+        path: a file of any format.
+        origin: (3,) what was taken off the reference's coordinates, mm.
+        millimetres: how many the unit of a file without one has.
+
+    Raises:
+        ReferenceFileError: the file cannot be read, or holds no loose curves.
+    """
+    model = load_model(path, millimetres, near_origin=False)
+    loose = model.curves()
+    if not loose:
+        raise ReferenceFileError(
+            f"'{path.name}' holds no loose curves, only faces: export the lines between the panels as curves."
+        )
+    return sampled(loose, path.name, -np.asarray(origin))
+
+
+def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:
+    """Curves with points along them, moved by (3,) `shift`; those without length are left out.
+
+    Raises:
+        ReferenceFileError: the kernel cannot evaluate one of them.
+    """
+    curves = []
+    for number, curve in enumerate(loose, start=1):
+        if BRep_Tool.Degenerated_s(curve.edge):
+            continue
+        edge = shifted(curve.edge, tuple(shift.tolist())) if shift.any() else curve.edge
+        try:
+            adaptor = BRepAdaptor_Curve(edge)
+            places = np.linspace(adaptor.FirstParameter(), adaptor.LastParameter(), POINTS)
+            points = np.array([adaptor.Value(place).Coord() for place in places.tolist()])
+        except Standard_Failure as error:
+            raise ReferenceFileError(
+                f"Curve {number} of '{source}' cannot be evaluated by the CAD kernel ({error}): redraw it."
+            ) from error
+        if not np.isfinite(points).all():
+            raise ReferenceFileError(f"Curve {number} of '{source}' has points that are not numbers: redraw it.")
+        if np.ptp(points, axis=0).max() > 0.0:
+            curves.append(Curve(number=number, name=curve.label.name, edge=edge, points=points))
+    return tuple(curves)
+
+
+def chain(polylines: Sequence[Array]) -> Array | None:
+    """Join polylines that follow each other to one, begun at the end that comes first along its main axis.
+
+    Returns:
+        (q, 3) points, or None where they do not follow each other.
+    """
+    left = list(polylines)
+    if not left:
+        return None
+    near = FOLLOWS * sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in left)
+    line = left.pop(0)
+    while left:
+        for index, other in enumerate(left):
+            joined = _joined(line, other, near)
+            if joined is not None:
+                line = joined
+                left.pop(index)
+                break
+        else:
+            return None
+    way = line[-1] - line[0]
+    return line[::-1] if way[np.abs(way).argmax()] < 0.0 else line
+
+
+def _joined(line: Array, other: Array, near: float) -> Array | None:
+    for first in (line, line[::-1]):
+        for second in (other, other[::-1]):
+            if np.linalg.norm(first[-1] - second[0]) <= near:
+                return np.concatenate([first, second[1:]])
+    return None

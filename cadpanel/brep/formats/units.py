@@ -1,0 +1,32 @@
+"""Units of length, and shapes in millimetres."""
+
+from __future__ import annotations
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TopoDS import TopoDS_Shape
+
+from cadpanel.errors import ReferenceFileError
+
+
+def refuse_unit(name: str, own: str) -> ReferenceFileError:
+    """What to say where the user gives a unit and the file has one of its own."""
+    return ReferenceFileError(
+        f"'{name}' says itself that its unit is the {own}: leave the unit out, or correct it in the export."
+    )
+
+
+def scaled(shape: TopoDS_Shape, factor: float) -> TopoDS_Shape:
+    """A shape made larger by a factor."""
+    if factor == 1.0:
+        return shape
+    scaling = gp_Trsf()
+    scaling.SetScale(gp_Pnt(0.0, 0.0, 0.0), factor)
+    return BRepBuilderAPI_Transform(shape, scaling, True).Shape()
+
+
+def shifted(shape: TopoDS_Shape, by: tuple[float, float, float]) -> TopoDS_Shape:
+    """A shape moved, its geometry and not only its placement: what the kernel computes with becomes small."""
+    translation = gp_Trsf()
+    translation.SetTranslation(gp_Vec(*by))
+    return BRepBuilderAPI_Transform(shape, translation, True).Shape()

@@ -1,0 +1,75 @@
+"""Which faces of a model are the skin: chosen by name, layer, colour or number."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatchcase
+
+from cadpanel.brep.model import Label, Model, ModelFace
+from cadpanel.errors import ReferenceFileError
+
+NUMBERS = re.compile(r"(\d+)(?:\s*-\s*(\d+))?")
+# Words that a message lists of each kind at most.
+MOST_LISTED = 8
+
+_KEYS: dict[str, Callable[[Label], str]] = {
+    "name": lambda label: label.name,
+    "layer": lambda label: label.layer,
+    "color": lambda label: label.color,
+}
+
+
+def select_faces(model: Model, chosen: Sequence[str] | None) -> tuple[ModelFace, ...]:
+    """The faces that are the skin, in file order.
+
+    Args:
+        model: what the file holds.
+        chosen: as `ReferenceSettings.faces` says; None for all faces, if no solid is among them.
+
+    Raises:
+        ReferenceFileError: the file holds no faces, a choice fits none, or a solid's outer faces are not chosen.
+    """
+    faces = model.faces()
+    if not faces:
+        raise ReferenceFileError(
+            f"'{model.source}' holds no faces, only curves, points or nothing: export the faces of the skin, too."
+        )
+    if chosen is None:
+        solid = next((face for face in faces if face.of_solid), None)
+        if solid is not None:
+            raise ReferenceFileError(
+                f"'{model.source}' holds a solid, of which face {solid.number} is one: say which of its faces are the "
+                f"skin (by number, name, layer or color; {_offers(faces)})."
+            )
+        return faces
+    taken: set[int] = set()
+    for word in chosen:
+        fitting = {face.number for face in faces if _fits(word, face)}
+        if not fitting:
+            raise ReferenceFileError(f"'{model.source}' has no face '{word}': {_offers(faces)}.")
+        taken |= fitting
+    return tuple(face for face in faces if face.number in taken)
+
+
+def _fits(word: str, face: ModelFace) -> bool:
+    numbers = NUMBERS.fullmatch(word)
+    if numbers is not None:
+        first = int(numbers[1])
+        return first <= face.number <= int(numbers[2] or first)
+    key, equals, wanted = word.partition("=")
+    if not equals or key not in _KEYS:
+        key, wanted = "name", word
+    said = _KEYS[key](face.label)
+    return said != "" and fnmatchcase(said.casefold(), wanted.strip().casefold())
+
+
+def _offers(faces: Sequence[ModelFace]) -> str:
+    """What there is to choose from."""
+    offers = [f"it has faces 1 to {len(faces)}" if len(faces) > 1 else "it has face 1 only"]
+    for key, said in _KEYS.items():
+        words = sorted({said(face.label) for face in faces} - {""})
+        if words:
+            more = f" and {len(words) - MOST_LISTED} more" if len(words) > MOST_LISTED else ""
+            offers.append(f"{key}s {', '.join(words[:MOST_LISTED])}{more}")
+    return "; ".join(offers)

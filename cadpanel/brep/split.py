@@ -1,0 +1,103 @@
+"""Faces split by edges or faces through the kernel's own splitter, and proof that nothing was lost on the way.
+
+The splitter may leave faces uncut or drop a part without a word, so areas are added up and what was cut is counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.Standard import Standard_Failure
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
+from OCP.TopTools import TopTools_ListOfShape
+
+from cadpanel.errors import ReferenceFileError
+
+FUZZY = 1e-3
+"""How far a cut may end from the boundary that it should reach, mm."""
+LOST_AREA = 1e-6
+"""Part of the area by which the pieces may differ from what was split."""
+
+INTEGRATED = 1e-8
+"""Relative error to which areas are integrated where it matters."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pieces:
+    """What faces were split into.
+
+    Attributes:
+        faces: the pieces of each face, in the order given.
+        tools: the parts of each tool, in the order given; where a tool is an edge, they are edges of the pieces.
+    """
+
+    faces: tuple[tuple[TopoDS_Face, ...], ...]
+    tools: tuple[tuple[TopoDS_Shape, ...], ...]
+
+
+def split_faces(faces: Sequence[TopoDS_Face], tools: Sequence[TopoDS_Shape], what: str, fuzzy: float = FUZZY) -> Pieces:
+    """Split faces by all tools at once.
+
+    Args:
+        faces: what to split; neighbours keep sharing their edges.
+        tools: edges on them, or faces through them.
+        what: what is split and where it comes from, for messages ("face 3 of 'roof.step'").
+        fuzzy: tolerance, mm.
+
+    Raises:
+        ReferenceFileError: the kernel fails, or its pieces do not have the area of the whole.
+    """
+    splitter = BRepAlgoAPI_Splitter()
+    splitter.SetArguments(_listed(faces))
+    splitter.SetTools(_listed(tools))
+    splitter.SetFuzzyValue(fuzzy)
+    try:
+        splitter.Build()
+        if not splitter.IsDone():
+            raise ReferenceFileError(_failed(what, "its splitter gives up"))
+        pieces = tuple(_results(splitter, face) for face in faces)
+        used = tuple(tuple(splitter.Modified(tool)) or (tool,) for tool in tools)
+    except Standard_Failure as error:
+        raise ReferenceFileError(_failed(what, str(error))) from error
+    for face, parts in zip(faces, pieces, strict=True):
+        whole, summed = area_of(face), sum(map(area_of, parts))
+        if abs(whole - summed) > LOST_AREA * whole:
+            whole, summed = area_of(face, exactly=True), sum(area_of(part, exactly=True) for part in parts)
+        if abs(whole - summed) > LOST_AREA * whole:
+            raise ReferenceFileError(_failed(what, f"of {whole:.6g} mm2, its pieces cover {summed:.6g} mm2"))
+    return Pieces(faces=pieces, tools=used)
+
+
+def area_of(shape: TopoDS_Shape, *, exactly: bool = False) -> float:
+    """Area as the kernel integrates it, mm^2; to about 1e-5 of it on splines, unless asked for exactly."""
+    properties = GProp_GProps()
+    if exactly:
+        BRepGProp.SurfaceProperties_s(shape, properties, INTEGRATED)
+    else:
+        BRepGProp.SurfaceProperties_s(shape, properties)
+    return abs(float(properties.Mass()))
+
+
+def _results(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoDS_Face, ...]:
+    if splitter.IsDeleted(face):
+        return ()
+    parts = tuple(TopoDS.Face_s(part) for part in splitter.Modified(face))
+    return parts or (face,)
+
+
+def _listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
+    listed = TopTools_ListOfShape()
+    for shape in shapes:
+        listed.Append(shape)
+    return listed
+
+
+def _failed(what: str, why: str) -> str:
+    return (
+        f"The CAD kernel cannot split {what} ({why}): move the cuts a little, cut with a network of curves, "
+        "or split the surface where it was modelled."
+    )

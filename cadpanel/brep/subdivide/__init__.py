@@ -1,0 +1,1 @@
+"""The ways to cut a surface into panels, one a file."""

@@ -1,0 +1,130 @@
+"""From the skin's surfaces to panels, whichever way is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cadpanel.brep.connect import Surface
+from cadpanel.brep.curves import Curve, load_curves, sampled
+from cadpanel.brep.model import Model
+from cadpanel.brep.subdivide.grid import cut_grid
+from cadpanel.brep.subdivide.lengths import cut_lengths
+from cadpanel.brep.subdivide.mesh import load_mesh, require_all_panels
+from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
+from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.stations import cut_stations
+from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.reference.settings import ReferenceSettings
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cut:
+    """The panels of a reference, and what should be known of how they were cut."""
+
+    panels: tuple[CutPanel, ...]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Skin:
+    """What is cut: surfaces of a model, the file that it came from, and how to cut."""
+
+    model: Model
+    surfaces: Sequence[Surface]
+    settings: ReferenceSettings
+    file: Path
+
+    @property
+    def origin(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return np.array(self.model.origin, dtype=np.float64)
+
+
+def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, file: Path) -> Cut:
+    """Cut every surface the way that the settings ask for.
+
+    Args:
+        model: the file's content.
+        surfaces: the skin, in faces that hang together.
+        settings: with one way to cut.
+        file: where the model came from.
+
+    Raises:
+        ReferenceFileError: a surface cannot be cut that way.
+        SettingsError: no way is asked for, or a setting does not fit the surface.
+    """
+    if settings.way is None:
+        raise SettingsError(f"no way to cut '{model.source}' was asked for")
+    return WAYS[settings.way](_Skin(model=model, surfaces=surfaces, settings=settings, file=file))
+
+
+def _lengths(skin: _Skin) -> Cut:
+    count, lip = skin.settings.divide or 1, skin.settings.lip
+    cut = [cut_lengths(surface, count, lip, skin.model.source) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+
+
+def _grid(skin: _Skin) -> Cut:
+    counts, by = skin.settings.grid or (1, 1), skin.settings.by
+    cut = [cut_grid(surface, counts, by, skin.model.source) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+
+
+def _stations(skin: _Skin) -> Cut:
+    how = skin.settings
+    cut = [
+        cut_stations(surface, how.stations or (), how.spine, skin.model.source, skin.origin, how.millimetres)
+        for surface in skin.surfaces
+    ]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+
+
+def _network(skin: _Skin) -> Cut:
+    file = skin.settings.network or skin.file
+    if file.exists() and file.resolve() == skin.file.resolve():
+        curves = sampled(skin.model.curves(), file.name, np.zeros(3))
+        if not curves:
+            raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
+    else:
+        curves = load_curves(file, skin.origin, skin.settings.millimetres)
+    return _cut_by_curves(skin, curves, file.name)
+
+
+def _mesh(skin: _Skin) -> Cut:
+    file = skin.settings.mesh or skin.file
+    mesh = load_mesh(file, skin.origin, skin.settings.millimetres or 1.0)
+    cut = _cut_by_curves(skin, mesh.curves(), file.name)
+    require_all_panels(mesh, cut.panels, file.name, skin.model.source)
+    return cut
+
+
+def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str) -> Cut:
+    """Cut every surface by the curves that lie over it, and refuse a curve that lies over none."""
+    tolerance = skin.settings.seam_tolerance
+    landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
+    stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
+    if stray:
+        called = stray[0].called
+        raise ReferenceFileError(
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': take "
+            "it out, or draw it on the surface."
+        )
+    panels: list[CutPanel] = []
+    for surface, landing in zip(skin.surfaces, landings, strict=True):
+        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, tolerance)
+    farthest = max(landing.offset for landing in landings)
+    notes = (f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it.",)
+    return Cut(panels=tuple(panels), notes=notes if farthest > WORTH_A_NOTE else ())
+
+
+WAYS: dict[str, Callable[[_Skin], Cut]] = {
+    "divide": _lengths,
+    "grid": _grid,
+    "stations": _stations,
+    "network": _network,
+    "mesh": _mesh,
+}
+"""The ways to cut, by the settings that ask for them."""

@@ -1,0 +1,123 @@
+"""A grid along the two parameters of each face, by parameter or by length."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepLib import BRepLib
+from OCP.BRepTools import BRepTools
+from OCP.GCE2d import GCE2d_MakeSegment
+from OCP.Geom2d import Geom2d_TrimmedCurve
+from OCP.gp import gp_Pnt2d
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
+
+from cadpanel.brep.connect import Surface
+from cadpanel.brep.patch import Patch, equal_parts, geometry, lengths_along, rectangle
+from cadpanel.brep.split import split_faces
+from cadpanel.brep.subdivide.panel import CutPanel, grid_name
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import By
+
+Array = NDArray[np.float64]
+
+# Lines across the surface over which lengths are averaged.
+AVERAGED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
+# How far a piece may reach over the lines of its cell, as a part of the parameter range.
+OVER_THE_LINE = 1e-5
+
+
+def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str) -> tuple[CutPanel, ...]:
+    """Cut each face of a surface into a grid: rows follow u, columns v.
+
+    A face that fills its parameter range is cut into exact rectangles of it; a trimmed one is split along the same
+    lines, and has panels only where it lies.
+
+    Raises:
+        ReferenceFileError: a panel would be closed round, or the kernel cannot split a trimmed face.
+    """
+    panels: list[CutPanel] = []
+    for face in surface.faces:
+        name = surface.name if len(surface.faces) == 1 else f"{surface.name}.{face.number}"
+        for axis, count in enumerate(counts):
+            if count == 1 and face.patch.closed(axis):
+                raise ReferenceFileError(
+                    f"Face {face.number} of '{source}' is closed along its parameter {'uv'[axis]}: a panel cannot go "
+                    "round it, so cut it there, too (a grid of 2 or more that way)."
+                )
+        lines = [_lines(face.patch, axis, count, by) for axis, count in enumerate(counts)]
+        cells = (
+            _whole_cells(face.patch, lines)
+            if face.patch.whole
+            else _trimmed_cells(face.patch, lines, f"face {face.number} of '{source}'")
+        )
+        for row, column, piece in cells:
+            panels.append(CutPanel(name=grid_name(name, row, column, counts), faces=(piece,)))
+    return _told_apart(panels)
+
+
+def _lines(patch: Patch, axis: int, count: int, by: By) -> Array:
+    """The (count + 1,) parameters at which the grid's lines lie, the borders included."""
+    parts = np.linspace(0.0, 1.0, count + 1)
+    if by == "length":
+        parts[1:-1] = equal_parts(lengths_along(patch, axis, AVERAGED).mean(axis=0), parts[1:-1])
+    low, high = patch.bounds[axis]
+    lines = low + parts * (high - low)
+    lines[-1] = high
+    return np.asarray(lines)
+
+
+def _whole_cells(patch: Patch, lines: list[Array]) -> list[tuple[int, int, TopoDS_Face]]:
+    return [
+        (row, column, rectangle(patch, u_range, v_range))
+        for row, u_range in enumerate(pairwise(lines[0].tolist()))
+        for column, v_range in enumerate(pairwise(lines[1].tolist()))
+    ]
+
+
+def _trimmed_cells(patch: Patch, lines: list[Array], what: str) -> list[tuple[int, int, TopoDS_Face]]:
+    """The pieces of a trimmed face between the lines, each with its cell."""
+    tools = [_line_edge(patch, axis, place) for axis in (0, 1) for place in lines[axis][1:-1].tolist()]
+    pieces = split_faces([patch.face], tools, what).faces[0] if tools else (patch.face,)
+    cells = []
+    for piece in pieces:
+        bounds = np.array(BRepTools.UVBounds_s(piece)).reshape(2, 2)
+        cell = [int(np.searchsorted(lines[axis], bounds[axis].mean(), side="right")) - 1 for axis in (0, 1)]
+        for axis in (0, 1):
+            margin = OVER_THE_LINE * np.ptp(patch.bounds[axis])
+            low, high = lines[axis][cell[axis] : cell[axis] + 2]
+            if bounds[axis, 0] < low - margin or bounds[axis, 1] > high + margin:
+                raise ReferenceFileError(
+                    f"The CAD kernel leaves {what} uncut along a line of the grid, near {'uv'[axis]} = {low:.6g} or "
+                    f"{high:.6g}: choose other numbers of panels, or split the surface where it was modelled."
+                )
+        cells.append((cell[0], cell[1], piece))
+    return sorted(cells, key=lambda cell: cell[:2])
+
+
+def _line_edge(patch: Patch, axis: int, place: float) -> TopoDS_Shape:
+    """The edge along which parameter `axis` has one value, over the face's whole range."""
+    low, high = patch.bounds[1 - axis].tolist()
+    ends = [gp_Pnt2d(place, low), gp_Pnt2d(place, high)] if axis == 0 else [gp_Pnt2d(low, place), gp_Pnt2d(high, place)]
+    line: Geom2d_TrimmedCurve = GCE2d_MakeSegment(*ends).Value()
+    edge = BRepBuilderAPI_MakeEdge(line, geometry(patch)).Edge()
+    BRepLib.BuildCurves3d_s(edge)
+    return edge
+
+
+def _told_apart(panels: list[CutPanel]) -> tuple[CutPanel, ...]:
+    """Where trimming leaves several pieces in one cell, they are called a, b and so on, by their place in the list."""
+    seen: dict[str, int] = {}
+    total: dict[str, int] = {}
+    for panel in panels:
+        total[panel.name] = total.get(panel.name, 0) + 1
+    named = []
+    for panel in panels:
+        if total[panel.name] > 1:
+            seen[panel.name] = seen.get(panel.name, 0) + 1
+            named.append(CutPanel(name=f"{panel.name}.{seen[panel.name]}", faces=panel.faces))
+        else:
+            named.append(panel)
+    return tuple(named)

@@ -1,0 +1,166 @@
+"""A mesh of panel corners over a surface: its inner edges cut the surface, one panel a face of the mesh."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from scipy.spatial import cKDTree
+
+from cadpanel.brep import kernel
+from cadpanel.brep.curves import Curve
+from cadpanel.brep.file_check import contents
+from cadpanel.brep.model import compound_of
+from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.errors import ReferenceFileError
+
+Array = NDArray[np.float64]
+
+# An inner edge that ends on the mesh's border is drawn on by this part of its length, so that it surely meets the
+# outline of the surface; what lies beyond is not projected.
+DRAWN_ON = 0.02
+FEWEST_CORNERS = 3
+# Points along an edge that are brought onto the surface.
+POINTS = 33
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mesh:
+    """Corners (n, 3) in the reference's coordinates, mm, and the corners of each face, in order round it."""
+
+    corners: Array
+    faces: tuple[tuple[int, ...], ...]
+
+    def curves(self) -> tuple[Curve, ...]:
+        """The edges between two faces, in their order, as curves."""
+        uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
+        on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
+        found: list[Curve] = []
+        for edge in sorted(edge for edge, count in uses.items() if count == 2):
+            first, last = self.corners[list(edge)]
+            way = DRAWN_ON * (last - first)
+            start = first - way if edge[0] in on_border else first
+            stop = last + way if edge[1] in on_border else last
+            parts = np.linspace(0.0, 1.0, POINTS)[:, None]
+            found.append(
+                Curve(
+                    number=len(found) + 1,
+                    name=f"edge {edge[0] + 1} - {edge[1] + 1}",
+                    edge=BRepBuilderAPI_MakeEdge(kernel.point(start), kernel.point(stop)).Edge(),
+                    points=start + parts * (stop - start),
+                )
+            )
+        return tuple(found)
+
+    def middles(self) -> Array:
+        """(m, 3) means of the faces' corners."""
+        return np.array([self.corners[list(face)].mean(axis=0) for face in self.faces])
+
+
+def load_mesh(path: Path, origin: Array, millimetres: float) -> Mesh:
+    """Read an OBJ or OFF file.
+
+    Args:
+        path: the file.
+        origin: (3,) what was taken off the reference's coordinates, mm.
+        millimetres: how many the mesh's unit has.
+
+    Raises:
+        ReferenceFileError: it is neither, is damaged, or its faces do not join.
+    """
+    text = contents(path).decode("utf-8", errors="replace")
+    try:
+        corners, faces = _off(text) if text.lstrip().startswith("OFF") else _obj(text)
+    except (ValueError, IndexError) as error:
+        raise ReferenceFileError(f"'{path.name}' is a damaged OBJ or OFF mesh ({error}): export it again.") from error
+    if not faces:
+        raise ReferenceFileError(f"'{path.name}' is no OBJ or OFF mesh with faces: export the panels' mesh as one.")
+    points = millimetres * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
+    _check(path.name, points, faces)
+    return Mesh(corners=points, faces=tuple(faces))
+
+
+def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str, source: str) -> None:
+    """Refuse panels that are not one a face of the mesh.
+
+    Raises:
+        ReferenceFileError: their numbers differ, or a face has none of its own.
+    """
+    if len(panels) != len(mesh.faces):
+        raise ReferenceFileError(
+            f"The mesh '{mesh_source}' has {len(mesh.faces)} faces but cuts '{source}' into {len(panels)} panels: it "
+            "must reach the outline of the surface all round."
+        )
+    samples = [np.concatenate([face.points for face in sample_faces(compound_of(panel.faces))]) for panel in panels]
+    _, nearest = cKDTree(mesh.middles()).query(np.array([points.mean(axis=0) for points in samples]))
+    alone = np.bincount(nearest, minlength=len(mesh.faces))
+    if alone.max() > 1:
+        raise ReferenceFileError(
+            f"Face {int(alone.argmax()) + 1} of the mesh '{mesh_source}' lies over {int(alone.max())} panels of "
+            f"'{source}', and another one over none: lay the mesh over the surface."
+        )
+
+
+def _check(name: str, corners: Array, faces: Sequence[tuple[int, ...]]) -> None:
+    if not np.isfinite(corners).all():
+        raise ReferenceFileError(f"'{name}' has corners that are not numbers: export the mesh again.")
+    for place, face in enumerate(faces, start=1):
+        if len(face) < FEWEST_CORNERS or len(set(face)) < len(face) or not all(0 <= c < len(corners) for c in face):
+            raise ReferenceFileError(
+                f"Face {place} of '{name}' has fewer than three different corners, or one that is not there: repair it."
+            )
+    uses = Counter(_edge(*pair) for face in faces for pair in _round(face))
+    if max(uses.values()) > 2:
+        (first, last), count = max(uses.items(), key=lambda item: item[1])
+        raise ReferenceFileError(
+            f"{count} faces of '{name}' share the edge from corner {first + 1} to {last + 1}: at most two panels can."
+        )
+
+
+def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:
+    return list(pairwise((*face, face[0])))
+
+
+def _edge(first: int, last: int) -> tuple[int, int]:
+    return (min(first, last), max(first, last))
+
+
+def _obj(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
+    corners: list[list[float]] = []
+    faces: list[tuple[int, ...]] = []
+    for line in text.replace("\\\n", " ").splitlines():
+        words = line.split("#", 1)[0].split()
+        if words[:1] == ["v"]:
+            corners.append([float(word) for word in words[1:4]])
+        elif words[:1] == ["f"]:
+            numbers = [int(word.split("/", 1)[0]) for word in words[1:]]
+            faces.append(tuple(number - 1 if number > 0 else len(corners) + number for number in numbers))
+    if any(len(corner) != 3 for corner in corners):
+        raise ValueError("a corner has fewer than three coordinates")
+    return corners, faces
+
+
+def _off(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
+    words = [word for line in text.splitlines() for word in line.split("#", 1)[0].split()]
+    count, face_count = int(words[1]), int(words[2])
+    if count < 0 or face_count < 0 or 4 + 3 * count > len(words):
+        raise ValueError("it breaks off before its last corner")
+    numbers = [float(word) for word in words[4 : 4 + 3 * count]]
+    corners = [numbers[place : place + 3] for place in range(0, 3 * count, 3)]
+    faces = []
+    # Faces are lines, as they may end with a colour.
+    lines = [line.split("#", 1)[0].split() for line in text.splitlines()]
+    rows = [line for line in lines if line][-face_count:] if face_count else []
+    for row in rows:
+        size = int(row[0])
+        faces.append(tuple(int(word) for word in row[1 : 1 + size]))
+        if len(faces[-1]) != size:
+            raise ValueError("a face has fewer corners than it says")
+    return corners, faces

@@ -1,0 +1,186 @@
+"""A surface cut by a network of curves that lie on it or near it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.GCPnts import GCPnts_AbscissaPoint
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_INTERNAL
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cadpanel.brep.connect import Surface
+from cadpanel.brep.curves import Curve
+from cadpanel.brep.model import compound_of, shapes_of
+from cadpanel.brep.project import Landing, land
+from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.split import Pieces, split_faces
+from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.places import Link, place_names
+from cadpanel.errors import ReferenceFileError
+
+Array = NDArray[np.float64]
+
+# A curve may lie this far off the surface, as a part of the surface's size, and at least this many mm.
+NEAR_PART = 0.01
+NEAR = 10.0
+# An offset of more than this is worth a note, mm.
+WORTH_A_NOTE = 0.01
+# Tolerances of the splitter that are tried in turn, as parts of the seam tolerance, until every curve cuts.
+FUZZY_PARTS = (0.01, 0.1, 0.5)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Cut:
+    """A split surface.
+
+    Attributes:
+        faces: all pieces.
+        links: pairs of pieces that share an edge, with that edge's length and middle, and whether a curve made it.
+        loose: the parts of curves that separate nothing: the curve's index, and the edge.
+    """
+
+    faces: tuple[TopoDS_Face, ...]
+    links: tuple[tuple[int, int, TopoDS_Edge, bool], ...]
+    loose: tuple[tuple[int, TopoDS_Edge], ...]
+
+
+def land_curves(surface: Surface, curves: Sequence[Curve], tolerance: float) -> Landing:
+    """What curves leave on a surface; those that do not pass over it leave nothing."""
+    reach = max(NEAR, NEAR_PART * surface.size)
+    return land(surface, [curve.points for curve in curves], reach, tolerance)
+
+
+def cut_network(
+    surface: Surface, curves: Sequence[Curve], landing: Landing, source: str, curve_source: str, tolerance: float
+) -> tuple[CutPanel, ...]:
+    """Cut a surface along curves.
+
+    Every part of every curve must lie between two panels or on the outline, or the surface is refused with the curve
+    that does not.
+
+    Args:
+        surface: what to cut.
+        curves: all curves.
+        landing: what they leave on the surface.
+        source: the reference's name.
+        curve_source: the name of the file that the curves come from.
+        tolerance: how far a curve may end from where it should, mm.
+
+    Raises:
+        ReferenceFileError: a curve ends inside a panel, or the kernel does not cut along it.
+    """
+    cut = _split(surface, landing.edges, f"the surface of {surface.numbers} of '{source}'", tolerance)
+    if cut.loose:
+        index, edge = cut.loose[0]
+        x, y, z = _middle(edge)
+        called = curves[index].called
+        raise ReferenceFileError(
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' separates no two panels near ({x:.1f}, {y:.1f}, "
+            f"{z:.1f}): draw it on to the next curve or to the outline of the surface, or take it out."
+        )
+    return _panels(surface.name, cut)
+
+
+def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, tolerance: float) -> _Cut:
+    """Split with growing tolerance until every part of every curve separates two pieces or lies on the outline.
+
+    Ends that stick out beyond another curve by no more than the tolerance are taken off.
+    """
+    faces = [face.patch.face for face in surface.faces]
+    owners = [(index, edge) for index, parts in enumerate(tools) for edge in parts]
+    cut: _Cut | None = None
+    for part in FUZZY_PARTS:
+        pieces = split_faces(faces, [edge for _, edge in owners], what, part * tolerance)
+        cut = _looked_at(pieces, owners)
+        if cut.loose and all(_length(edge) <= tolerance for _, edge in cut.loose):
+            kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
+            pieces = split_faces(faces, [edge for _, edge in kept], what, part * tolerance)
+            cut = _looked_at(pieces, kept)
+        if not cut.loose:
+            break
+    assert cut is not None
+    return cut
+
+
+def _without(
+    pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], loose: set[int]
+) -> list[tuple[int, TopoDS_Edge]]:
+    """The parts of the curves that do separate something."""
+    return [
+        (index, TopoDS.Edge_s(part))
+        for (index, _), parts in zip(owners, pieces.tools, strict=True)
+        for part in parts
+        if hash(part) not in loose
+    ]
+
+
+def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cut:
+    faces = tuple(face for parts in pieces.faces for face in parts)
+    numbers = {hash(face): index for index, face in enumerate(faces)}
+    around = TopTools_IndexedDataMapOfShapeListOfShape()
+    TopExp.MapShapesAndAncestors_s(compound_of(faces), TopAbs_EDGE, TopAbs_FACE, around)
+    # A curve that ends inside a piece is kept there as an edge on none of its borders.
+    inner = {
+        hash(edge) for face in faces for edge in shapes_of(face, TopAbs_EDGE) if edge.Orientation() == TopAbs_INTERNAL
+    }
+    curve_edges: set[int] = set()
+    loose: list[tuple[int, TopoDS_Edge]] = []
+    for (index, _), parts in zip(owners, pieces.tools, strict=True):
+        for part in parts:
+            curve_edges.add(hash(part))
+            users = _users(around, part, numbers)
+            # Twice in one piece: the piece lies on both sides. In no piece: the kernel left the curve out.
+            if not users or hash(part) in inner or (len(users) == 2 and users[0] == users[1]):
+                loose.append((index, TopoDS.Edge_s(part)))
+    links = []
+    for place in range(1, around.Extent() + 1):
+        edge = around.FindKey(place)
+        users = _users(around, edge, numbers)
+        if len(users) == 2 and users[0] != users[1]:
+            links.append((users[0], users[1], TopoDS.Edge_s(edge), hash(edge) in curve_edges))
+    return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -_length(part[1]))))
+
+
+def _users(around: TopTools_IndexedDataMapOfShapeListOfShape, edge: TopoDS_Shape, numbers: dict[int, int]) -> list[int]:
+    """The pieces that an edge bounds, one of them twice where it lies on both its sides."""
+    if not around.Contains(edge):
+        return []
+    return [numbers[hash(face)] for face in around.FindFromKey(edge)]
+
+
+def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:
+    """Pieces that hang together across edges which no curve made, named by where they sit."""
+    inner = np.array([link[:2] for link in cut.links if not link[3]], dtype=np.intp).reshape(-1, 2)
+    count = len(cut.faces)
+    graph = coo_array((np.ones(len(inner)), (inner[:, 0], inner[:, 1])), shape=(count, count))
+    number, group = connected_components(graph, directed=False)
+    groups = [[cut.faces[index] for index in np.flatnonzero(group == place)] for place in range(number)]
+    samples = [sample_faces(compound_of(faces)) for faces in groups]
+    points = [np.concatenate([face.points for face in faces]) for faces in samples]
+    weights = [np.concatenate([face.weights for face in faces]) for faces in samples]
+    middles = np.array([w @ p / w.sum() for w, p in zip(weights, points, strict=True)])
+    links = [
+        Link(panels=(int(group[first]), int(group[second])), middle=_middle(edge), length=_length(edge))
+        for first, second, edge, made in cut.links
+        if made and group[first] != group[second]
+    ]
+    names = place_names(name, middles, links)
+    order = sorted(range(number), key=lambda place: names[place])
+    return tuple(CutPanel(name=names[place], faces=tuple(groups[place])) for place in order)
+
+
+def _length(edge: TopoDS_Shape) -> float:
+    return float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(TopoDS.Edge_s(edge))))
+
+
+def _middle(edge: TopoDS_Shape) -> Array:
+    curve = BRepAdaptor_Curve(TopoDS.Edge_s(edge))
+    return np.array(curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter())).Coord())

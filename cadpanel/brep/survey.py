@@ -1,0 +1,210 @@
+"""What a file holds, as measured: faces, curves, surfaces that hang together, and lips. Nothing is guessed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from OCP.GeomAbs import (
+    GeomAbs_BezierSurface,
+    GeomAbs_BSplineSurface,
+    GeomAbs_Cone,
+    GeomAbs_Cylinder,
+    GeomAbs_OffsetSurface,
+    GeomAbs_Plane,
+    GeomAbs_Sphere,
+    GeomAbs_SurfaceOfExtrusion,
+    GeomAbs_SurfaceOfRevolution,
+    GeomAbs_Torus,
+)
+
+from cadpanel.brep.clean import SkinFace, skin_faces
+from cadpanel.brep.connect import Surface, surfaces_of
+from cadpanel.brep.curvature import Curvature, curvature_of
+from cadpanel.brep.curves import sampled
+from cadpanel.brep.lanes import find_lanes
+from cadpanel.brep.lips import Lip, lips_of, section_of
+from cadpanel.brep.loading import load_model
+from cadpanel.brep.model import Label, Model
+from cadpanel.brep.patch import Patch, lengths_along
+from cadpanel.brep.select import select_faces
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.polyline import norm
+from cadpanel.reference.settings import ReferenceSettings
+
+# Faces that fold by more than this where they meet are different surfaces here, degrees: a lip is round.
+SMOOTH = 30.0
+MIDDLE = np.array([0.5])
+# The kernel's kinds of surface by the words for them.
+KINDS = {
+    GeomAbs_Plane: "plane",
+    GeomAbs_Cylinder: "cylinder",
+    GeomAbs_Cone: "cone",
+    GeomAbs_Sphere: "sphere",
+    GeomAbs_Torus: "torus",
+    GeomAbs_BezierSurface: "Bezier",
+    GeomAbs_BSplineSurface: "B-spline",
+    GeomAbs_SurfaceOfRevolution: "revolution",
+    GeomAbs_SurfaceOfExtrusion: "extrusion",
+    GeomAbs_OffsetSurface: "offset",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaceSurvey:
+    """One face.
+
+    Attributes:
+        number: its place in the file, from 1, by which it may be chosen.
+        label: name, layer and colour; its part's where it has none of its own.
+        of_solid: whether it bounds a solid.
+        kind: what the file stores it as.
+        poles: control points along u and v; zeros where it has none.
+        area: mm^2.
+        size: (2,) lengths along u and v through the middle of its parameter range, mm.
+        trimmed: whether it covers only a part of that range.
+        curvature: flat, developable or doubly curved, with the numbers behind it.
+    """
+
+    number: int
+    label: Label
+    of_solid: bool
+    kind: str
+    poles: tuple[int, int]
+    area: float
+    size: tuple[float, float]
+    trimmed: bool
+    curvature: Curvature
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceSurvey:
+    """Faces that hang together.
+
+    Attributes:
+        name: under which its panels would go.
+        faces: their numbers.
+        area: mm^2.
+        lips: where normals turn fast across it; None where that could not be measured, as its faces share no parameter.
+        strip: (length, width) along and across the lips, mm; None with them.
+    """
+
+    name: str
+    faces: tuple[int, ...]
+    area: float
+    lips: tuple[Lip, ...] | None
+    strip: tuple[float, float] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveSurvey:
+    """One loose curve: its place among the curves, label and length in mm."""
+
+    number: int
+    label: Label
+    length: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Survey:
+    """What a file holds.
+
+    Attributes:
+        source: its name.
+        format: "STEP", "IGES", "BREP" or "Rhino".
+        unit: of its lengths, in its own words; everything here is in mm.
+        faces: one a face; those without area are left out, with a note.
+        surfaces: faces grouped by where they meet without a crease of more than SMOOTH.
+        curves: its loose curves.
+        notes: what was mended or moved, one sentence each.
+    """
+
+    source: str
+    format: str
+    unit: str
+    faces: tuple[FaceSurvey, ...]
+    surfaces: tuple[SurfaceSurvey, ...]
+    curves: tuple[CurveSurvey, ...]
+    notes: tuple[str, ...]
+
+
+def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Survey:
+    """Measure what a file holds.
+
+    Args:
+        path: a STEP, IGES, .brep or .3dm file.
+        settings: its unit, where it has none, the faces to look at, and the tolerance within which faces touch.
+
+    Raises:
+        ReferenceFileError: the file cannot be read, or holds neither faces nor curves.
+    """
+    how = settings or ReferenceSettings()
+    model = load_model(Path(path), how.millimetres)
+    skin, mended = _skin(model, how)
+    surfaces, gaps = surfaces_of(skin, model.source, how.seam_tolerance, SMOOTH) if skin else ((), ())
+    curves = sampled(model.curves(), model.source, np.zeros(3))
+    return Survey(
+        source=model.source,
+        format=model.format,
+        unit=model.unit,
+        faces=tuple(map(_face, skin)),
+        surfaces=tuple(map(_surface, surfaces)),
+        curves=tuple(
+            CurveSurvey(
+                number=curve.number,
+                label=model.curves()[curve.number - 1].label,
+                length=float(norm(np.diff(curve.points, axis=0)).sum()),
+            )
+            for curve in curves
+        ),
+        notes=(*model.notes, *mended, *gaps),
+    )
+
+
+def _skin(model: Model, how: ReferenceSettings) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
+    """All faces, those of solids, too."""
+    faces = model.faces() if how.faces is None else select_faces(model, how.faces)
+    if not faces:
+        if not model.curves():
+            raise ReferenceFileError(f"'{model.source}' holds neither faces nor curves.")
+        return (), ()
+    return skin_faces(faces, model.source, how.seam_tolerance)
+
+
+def _face(face: SkinFace) -> FaceSurvey:
+    surface = face.patch.surface
+    kind = surface.GetType()
+    has_poles = kind in (GeomAbs_BezierSurface, GeomAbs_BSplineSurface)
+    return FaceSurvey(
+        number=face.number,
+        label=face.source.label,
+        of_solid=face.source.of_solid,
+        kind=KINDS.get(kind, "other"),
+        poles=(surface.NbUPoles(), surface.NbVPoles()) if has_poles else (0, 0),
+        area=face.area,
+        size=_size(face.patch),
+        trimmed=not face.patch.whole,
+        curvature=curvature_of(face),
+    )
+
+
+def _size(patch: Patch) -> tuple[float, float]:
+    along_u, along_v = (float(lengths_along(patch, axis, MIDDLE)[0, -1]) for axis in (0, 1))
+    return along_u, along_v
+
+
+def _surface(surface: Surface) -> SurfaceSurvey:
+    lanes = find_lanes(surface)
+    section = None if lanes is None or not lanes.outer else section_of(lanes)
+    lips, strip = None, None
+    if lanes is not None and section is not None:
+        lips = lips_of(section.length, section.turn)
+        strip = (float(lanes.reach()[-1]), float(section.length[-1]))
+    return SurfaceSurvey(
+        name=surface.name,
+        faces=tuple(face.number for face in surface.faces),
+        area=surface.area,
+        lips=lips,
+        strip=strip,
+    )

@@ -1,0 +1,151 @@
+"""The planar polygon: a plane and its corners in it. No chain of rulings, but the same to fits, terms and seams."""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import dataclass, field
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.errors import SettingsError
+from cadpanel.features.boundary import Edge, polygon_edges
+from cadpanel.features.numbers import Number
+from cadpanel.features.patches import Patch, Plane
+from cadpanel.features.walk import Points, Rulings, Walk
+from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+MOST_CORNERS = 64
+
+_PLANE = (
+    Number("plane: shift_n", "length"),
+    Number("plane: turn_b", "slope"),
+    Number("plane: turn_t", "slope"),
+)
+
+
+@dataclass(frozen=True, init=False)
+class Polygon:
+    """A plane (3 numbers) and its corners in it (2 numbers each); all are independent.
+
+    Attributes:
+        name: as reports call it.
+        corner_count: number of corners, 3 or more.
+        patches: the one plane.
+        cuts: a polygon's edges lie square on it.
+        anchor: the patch that the walk starts from: the plane.
+        numbers: all numbers: of the plane, then b and t of each corner.
+        free: indices of the numbers that the fit may choose: all.
+    """
+
+    name: str
+    corner_count: int
+    patches: tuple[Patch, ...] = field(repr=False)
+    cuts: Literal["square"]
+    anchor: int
+    numbers: tuple[Number, ...] = field(repr=False)
+    free: IntArray = field(repr=False, compare=False)
+
+    def __init__(self, corners: int, *, name: str = "planar-polygon") -> None:
+        """Lay out the numbers.
+
+        Raises:
+            SettingsError: fewer than 3 corners, or more than any panel has.
+        """
+        if not 3 <= corners <= MOST_CORNERS:
+            raise SettingsError(f"a polygon has between 3 and {MOST_CORNERS} corners, not {corners}")
+        set_ = object.__setattr__
+        set_(self, "name", name)
+        set_(self, "corner_count", corners)
+        set_(self, "patches", (Plane(),))
+        set_(self, "cuts", "square")
+        set_(self, "anchor", 0)
+        of_corners = [Number(f"corner {i}: {axis}", "length") for i in range(corners) for axis in "bt"]
+        set_(self, "numbers", (*_PLANE, *of_corners))
+        set_(self, "free", np.arange(len(self.numbers), dtype=np.intp))
+
+    @property
+    def curved(self) -> tuple[bool, ...]:
+        """Its one patch is flat."""
+        return (False,)
+
+    @property
+    def edges(self) -> tuple[Edge, ...]:
+        """One from each corner to the next."""
+        return polygon_edges(self.corner_count)
+
+    def patch_slice(self, patch: int) -> slice:
+        """A plane alone has no numbers of its own.
+
+        Raises:
+            TypeError: always.
+        """
+        raise TypeError(f"patch {patch} of a polygon has no numbers of its own")
+
+    def cut_slice(self, end: int) -> slice:
+        """A polygon has edges all round and no ends.
+
+        Raises:
+            TypeError: always.
+        """
+        raise TypeError(f"a polygon has no end {end} that a plane could cut")
+
+    def in_units(self, length: float) -> Self:
+        """The same feature: it fixes no length."""
+        del length
+        return copy.copy(self)
+
+    def expand(self, unknowns: Array) -> Array:
+        """(n, numbers) all numbers from the (n, free) unknowns."""
+        return unknowns.copy()
+
+    def by_unknowns(self, derivatives: Array) -> Array:
+        """Derivatives (..., free) by the unknowns, from those (..., numbers) by all numbers."""
+        return derivatives
+
+    def bounds(self) -> tuple[Array, Array]:
+        """(free,) least and greatest values of the unknowns: none."""
+        none = np.full(len(self.free), np.inf)
+        return -none, none
+
+    def walk(self, values: Array, *, derivatives: bool) -> Walk:
+        """The planes of panels with these numbers (n, numbers), as their only ruling."""
+        panels = len(values)
+        turn = np.concatenate([values[:, 1:3], np.zeros((panels, 1))], axis=1)
+        axes = cayley(turn)
+        p = np.zeros((panels, 1, 3))
+        p[:, 0, 2] = values[:, 0]
+        twist = None
+        if derivatives:
+            twist = np.zeros((panels, 1, 6, values.shape[1]))
+            twist[:, 0, 5, 0] = 1.0
+            rates = cayley_rates(turn)[:, :, :2]
+            twist[:, 0, :3, 1:3] = rates
+            twist[:, 0, 3:, 1:3] = np.cross(p[:, 0, :, None], rates, axisa=1, axisb=1, axisc=1)
+        plane = Rulings(p, axes[:, None, :, 0], axes[:, None, :, 1], axes[:, None, :, 2], twist)
+        empty = np.zeros((panels, 0, 3))
+        none = Rulings(empty, empty, empty, empty, None if twist is None else twist[:, :0])
+        return Walk(self, values, plane, none, plane, none)
+
+    def corners(self, walked: Walk) -> Points:
+        """The corners (n, corners, 3) of walked panels."""
+        plane, panels = walked.anchor, len(walked.values)
+        axes = np.stack([plane.b[:, 0], plane.t[:, 0]], axis=1)
+        within = walked.values[:, len(_PLANE) :].reshape(panels, -1, 2)
+        position = plane.p + within @ axes
+        if plane.twist is None:
+            return Points(position, None)
+        moved = np.array(point_velocity(plane.twist, position))
+        for corner in range(self.corner_count):
+            at = len(_PLANE) + 2 * corner
+            moved[:, corner, :, at : at + 2] += np.swapaxes(axes, 1, 2)
+        return Points(position, moved)
+
+    def arcs(self, walked: Walk) -> Points:
+        """No arc points (n, 0, 3): all edges are straight."""
+        none = np.zeros((len(walked.values), 0, 3))
+        return Points(none, None if walked.anchor.twist is None else np.zeros((*none.shape, walked.values.shape[1])))

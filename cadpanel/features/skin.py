@@ -1,0 +1,93 @@
+"""The skin of walked panels: a point's patch, its distance from it, and how that follows the numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.walk import Walk
+from cadpanel.geometry.cone import (
+    INNER,
+    beyond,
+    cone_distance,
+    cone_distance_inner,
+    cone_normal,
+    plane_distance,
+    plane_inner,
+)
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+
+def assign(walked: Walk, x: Array) -> IntArray:
+    """(panels, m) the patch of each point x (3, panels, m).
+
+    A point belongs to the patch between whose bounding rulings its foot point falls. Walks outwards from the anchor
+    ruling: a point that is beyond one ruling may be beyond the next. Asking in this order keeps folds of up to half a
+    turn apart, whose far flange lies behind the near ruling's plane.
+    """
+    anchor, edges, feature = walked.anchor, walked.edges, walked.feature
+    if len(feature.patches) == 1:
+        return np.zeros(x.shape[1:], dtype=np.intp)
+    right = beyond(x, anchor.p[:, 0], anchor.b[:, 0])
+    patch = np.full(right.shape, feature.anchor, dtype=np.intp)
+    passed = right
+    for i in range(feature.anchor + 1, len(feature.patches)):
+        passed = passed & beyond(x, edges.p[:, i], edges.b[:, i])
+        patch += passed
+    passed = ~right
+    for i in range(feature.anchor, 0, -1):
+        passed = passed & ~beyond(x, edges.p[:, i], edges.b[:, i])
+        patch -= passed
+    return patch
+
+
+def patch_distance(walked: Walk, x: Array, patch: int) -> Array:
+    """(panels, m) signed distance of points x (3, panels, m) to the whole surface of one patch, positive outside."""
+    p, t, n = _carrier(walked, patch)
+    if not walked.feature.curved[patch]:
+        return plane_distance(x, p, n)
+    start = walked.feature.patch_slice(patch).start
+    return cone_distance(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+
+
+def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Array]:
+    """As `patch_distance`, and the derivative (panels, m, 8) by the patch's eight inner numbers."""
+    p, t, n = _carrier(walked, patch)
+    if not walked.feature.curved[patch]:
+        return plane_distance(x, p, n), plane_inner(x, n)
+    start = walked.feature.patch_slice(patch).start
+    return cone_distance_inner(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+
+
+def patch_outer(walked: Walk, patch: int) -> Array:
+    """(panels, 8, N) how a patch's eight inner numbers (twist of its ruling, radius, half angle) follow the numbers."""
+    if walked.carriers.twist is None:
+        raise ValueError("the panels were walked without derivatives")
+    outer = np.zeros((len(walked.values), INNER, walked.values.shape[1]))
+    outer[:, :6] = walked.carriers.twist[:, patch]
+    if walked.feature.curved[patch]:
+        start = walked.feature.patch_slice(patch).start
+        outer[:, 6, start] = 1.0
+        outer[:, 7, start + 1] = 1.0
+    return outer
+
+
+def skin_normals(walked: Walk, x: Array, patch: IntArray) -> Array:
+    """(panels, m, 3) the skin's unit normals at the foot points of points x (3, panels, m) on their patches."""
+    normals = np.empty((*patch.shape, 3))
+    for i, curved in enumerate(walked.feature.curved):
+        p, t, n = _carrier(walked, i)
+        if not curved:
+            here = np.broadcast_to(n[:, None], normals.shape)
+        else:
+            start = walked.feature.patch_slice(i).start
+            here = cone_normal(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+        normals = np.where((patch == i)[..., None], here, normals)
+    return normals
+
+
+def _carrier(walked: Walk, patch: int) -> tuple[Array, Array, Array]:
+    carriers = walked.carriers
+    return carriers.p[:, patch], carriers.t[:, patch], carriers.n[:, patch]

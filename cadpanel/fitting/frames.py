@@ -1,0 +1,57 @@
+"""Where the panels' own frames stand at the start, and the same chain seen from another frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.feature import Feature
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """Frames of n panels and one or more starts in them.
+
+    Attributes:
+        origins: (n, 3) mm.
+        axes: (n, 3, 3) columns b, t, n.
+        values: arrays (n, numbers) of all numbers.
+    """
+
+    origins: Array
+    axes: Array
+    values: list[Array]
+
+
+def reframe(feature: Feature, values: Array, shift: Array, axes: Array, into: Array) -> None:
+    """Tell chains whose anchor rulings stand in one frame by the numbers of another; their cuts are left alone.
+
+    The anchor ruling's point slides along the ruling into the middle plane of the frame, and the radii and widths,
+    which are measured at that point, follow to first order.
+
+    Args:
+        feature: the chain.
+        values: (n, numbers), changed in place.
+        shift: (n, 3) from the new frames' origins to the old ones', in the solver's length and the file's directions.
+        axes: (n, 3, 3) old frames.
+        into: (n, 3, 3) new frames.
+    """
+    p = np.einsum("px,pxa->pa", shift, into)
+    turn = np.swapaxes(into, 1, 2) @ axes
+    t = turn[:, :, 1]
+    slide = -p[:, 1] / t[:, 1]
+    p = p + slide[:, None] * t
+    # The Gibbs-Rodrigues vector, of length 2 tan(angle / 2).
+    trace = np.trace(turn, axis1=1, axis2=2)
+    skew = np.stack(
+        [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1
+    )
+    values[:, 0], values[:, 1] = p[:, 0], p[:, 2]
+    values[:, 2:5] = 2.0 * skew / (1.0 + trace)[:, None]
+    for i, curved in enumerate(feature.curved):
+        at = feature.patch_slice(i).start
+        values[:, at] += slide * np.tan(values[:, at + 1]) * (1.0 if curved else -1.0)

@@ -1,0 +1,133 @@
+"""Where along an end one patch of a chain gives way to the next, told by how the normals turn.
+
+Walking along an end from side 0 to side 1, the normals stand still on planes and turn evenly on cones and cylinders.
+The places of change are those for which this fits best: least squares over all ways to cut the walk into the chain's
+patches, found exactly by dynamic programming (R. Bellman, Communications of the ACM 4, 1961, p. 284), for all panels at
+once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+# No patch is shorter than so many steps, unless there are too many patches for that.
+SHORTEST = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """How walks are cut into patches.
+
+    Attributes:
+        knots: (n, k + 1) steps at which patches begin and end; the first is 0.
+        angles: (n, k + 1) angles of the normals there, the same on both sides of a plane, radians.
+    """
+
+    knots: IntArray
+    angles: Array
+
+
+def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False) -> Profile:
+    """Cut walks into patches.
+
+    Args:
+        turned: (n, q) angle by which the normals have turned at q evenly spaced places, radians.
+        curved: for each patch whether it turns.
+        even: give curved patches that follow each other equal parts of their stretch, instead of the best.
+    """
+    count, places = turned.shape
+    last = places - 1
+    least = max(1, min(SHORTEST, last // len(curved)))
+    costs = {kind: _costs(turned, kind, least) for kind in set(curved)}
+    best = np.full((count, places), np.inf)
+    best[:, 0] = 0.0
+    origins = []
+    for kind in curved:
+        # From which place j the patch that ends in k begins: cost of all before j, and of j to k as one patch.
+        whole = best[:, :, None] + costs[kind]
+        origin = np.argmin(whole, axis=1)
+        best = np.take_along_axis(whole, origin[:, None], axis=1)[:, 0]
+        origins.append(origin)
+    knots = np.empty((count, len(curved) + 1), dtype=np.intp)
+    knots[:, -1] = last
+    rows = np.arange(count)
+    for patch in range(len(curved) - 1, -1, -1):
+        knots[:, patch] = origins[patch][rows, knots[:, patch + 1]]
+    if even:
+        _even_out(knots, curved)
+    return Profile(knots, _angles(turned, knots, curved))
+
+
+def _even_out(knots: IntArray, curved: Sequence[bool]) -> None:
+    """Spread the knots between curved patches that follow each other evenly over their stretch."""
+    for start, stop in curved_runs(curved):
+        first, last = knots[:, start].copy(), knots[:, stop].copy()
+        for knot in range(start + 1, stop):
+            knots[:, knot] = np.round(first + (last - first) * (knot - start) / (stop - start))
+
+
+def curved_runs(curved: Sequence[bool]) -> list[tuple[int, int]]:
+    """First patch of, and first patch after, every stretch of curved patches that follow each other."""
+    runs, start = [], None
+    for patch, kind in enumerate((*curved, False)):
+        if kind and start is None:
+            start = patch
+        elif not kind and start is not None:
+            runs.append((start, patch))
+            start = None
+    return runs
+
+
+def _costs(turned: Array, curved: bool, least: int) -> Array:
+    """(n, q, q) sums of squares about the mean or the best line of the places j to k; infinite where too short."""
+    count, places = turned.shape
+    x = np.linspace(-1.0, 1.0, places)
+
+    def sums(values: Array) -> Array:
+        total = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values, axis=1)], axis=1)
+        return np.asarray(total[:, None, 1:] - total[:, :-1, None])
+
+    number = sums(np.ones((1, places)))
+    sy, syy = sums(turned), sums(turned**2)
+    allowed = (np.arange(places)[None, :] - np.arange(places)[:, None] >= least)[None]
+    number = np.where(allowed, number, 1.0)
+    cost = syy - sy**2 / number
+    if curved:
+        sx, sxx, sxy = sums(x[None]), sums(x[None] ** 2), sums(x * turned)
+        spread = np.where(allowed, sxx - sx**2 / number, 1.0)
+        cost = cost - (sxy - sx * sy / number) ** 2 / spread
+    return np.where(np.broadcast_to(allowed, (count, places, places)), np.maximum(cost, 0.0), np.inf)
+
+
+def _angles(turned: Array, knots: IntArray, curved: Sequence[bool]) -> Array:
+    """(n, k + 1) the angle at each knot: the mean of a plane that it bounds, else the mean of the two lines' ends."""
+    count, places = turned.shape
+    place = np.arange(places)
+    low, high = np.zeros((count, len(curved))), np.zeros((count, len(curved)))
+    for patch, kind in enumerate(curved):
+        inside = (place >= knots[:, patch, None]) & (place <= knots[:, patch + 1, None])
+        number = inside.sum(axis=1)
+        mean = np.sum(turned * inside, axis=1) / number
+        low[:, patch] = high[:, patch] = mean
+        if kind:
+            middle = np.sum(place * inside, axis=1) / number
+            off = (place - middle[:, None]) * inside
+            slope = np.sum(off * turned, axis=1) / np.maximum(np.sum(off**2, axis=1), np.finfo(float).tiny)
+            low[:, patch] += slope * (knots[:, patch] - middle)
+            high[:, patch] += slope * (knots[:, patch + 1] - middle)
+    angles = np.empty((count, len(curved) + 1))
+    angles[:, 0], angles[:, -1] = low[:, 0], high[:, -1]
+    for knot in range(1, len(curved)):
+        before, after = high[:, knot - 1], low[:, knot]
+        if curved[knot - 1] == curved[knot]:
+            angles[:, knot] = 0.5 * (before + after)
+        else:
+            angles[:, knot] = after if curved[knot - 1] else before
+    return angles

@@ -1,0 +1,153 @@
+"""How a reference is to be read, checked when it is made."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from numbers import Integral, Real
+from pathlib import Path
+from typing import Literal, get_args
+
+from cadpanel.errors import SettingsError
+
+By = Literal["length", "parameter"]
+
+MILLIMETRES = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "yd": 914.4}
+"""What the units that may be given for a file without one have in mm."""
+MOST_PANELS = 1_000_000
+WAYS = ("divide", "grid", "stations", "network", "mesh")
+"""The ways to cut a surface into panels, of which one may be asked for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceSettings:
+    """How to read a reference. Without a way to cut it, each product of the file is one panel.
+
+    Attributes:
+        seam_tolerance: how far panels that meet may lie apart in the file, mm.
+        unit: of a file that has none (every .brep): "mm", "cm", "m", "in", "ft" and so on.
+        faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
+            or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for anything.
+        divide: cut each strip into so many panels of equal length.
+        lip: with `divide`, keep only a band of this width about the strip's lip, measured along the surface, mm.
+        grid: cut each surface into so many by so many panels along its two parameters.
+        by: are the parts of a grid equal in length or in parameter?
+        stations: cut by planes at these lengths along the strip or the spine, mm.
+        spine: a file with the curve along which the stations are measured; the middle of the strip if None.
+        network: a file with curves that cut the surface; the reference itself if its own loose curves do.
+        mesh: an OBJ or OFF file whose faces become panels.
+    """
+
+    seam_tolerance: float = 1.0
+    unit: str | None = None
+    faces: tuple[str, ...] | None = None
+    divide: int | None = None
+    lip: float | None = None
+    grid: tuple[int, int] | None = None
+    by: By = "length"
+    stations: tuple[float, ...] | None = None
+    spine: Path | None = None
+    network: Path | None = None
+    mesh: Path | None = None
+
+    def __post_init__(self) -> None:
+        """Check every setting, and bring lists and paths into one form.
+
+        Raises:
+            SettingsError: a setting is out of its range, or contradicts another one.
+        """
+        if not _is_positive(self.seam_tolerance):
+            raise SettingsError(f"The seam tolerance must be a positive length in mm, not {self.seam_tolerance!r}.")
+        if self.unit is not None and self.unit not in MILLIMETRES:
+            raise SettingsError(f"there is no unit '{self.unit}'; choose one of: {', '.join(MILLIMETRES)}")
+        if self.by not in get_args(By):
+            raise SettingsError(f"a grid is cut by length or by parameter, not by {self.by!r}")
+        for name in ("spine", "network", "mesh"):
+            object.__setattr__(self, name, _path(name, getattr(self, name)))
+        object.__setattr__(self, "faces", _words(self.faces))
+        asked = [way for way in WAYS if getattr(self, way) is not None]
+        if len(asked) > 1:
+            raise SettingsError(f"{' and '.join(asked)} are ways to cut the same surface: choose one of them")
+        if self.divide is not None:
+            _require_count("number of panels to divide a strip into", self.divide, least=1)
+        object.__setattr__(self, "grid", _grid(self.grid))
+        object.__setattr__(self, "stations", _stations(self.stations))
+        if self.lip is not None:
+            if not _is_positive(self.lip):
+                raise SettingsError(f"the band about a lip must have a positive width in mm, not {self.lip!r}")
+            if self.divide is None:
+                raise SettingsError("a band about the lip is divided along its length: give the number of panels, too")
+        if self.by != "length" and self.grid is None:
+            raise SettingsError("'by' says how a grid is cut: give a grid, too")
+        if self.spine is not None and self.stations is None:
+            raise SettingsError("a spine is what stations are measured along: give stations, too")
+
+    @property
+    def way(self) -> str | None:
+        """Which way the surface is to be cut, None for not at all."""
+        return next((way for way in WAYS if getattr(self, way) is not None), None)
+
+    @property
+    def millimetres(self) -> float | None:
+        """How many mm the given unit has, None where none is given."""
+        return None if self.unit is None else MILLIMETRES[self.unit]
+
+
+def _is_switch(value: object) -> bool:
+    """True and False count as numbers in Python, but nobody means them so."""
+    return isinstance(value, bool)
+
+
+def _is_positive(value: object) -> bool:
+    return not _is_switch(value) and isinstance(value, Real) and 0.0 < float(value) < math.inf
+
+
+def _require_count(what: str, value: object, least: int) -> None:
+    if _is_switch(value) or not isinstance(value, Integral) or not least <= int(value) <= MOST_PANELS:
+        raise SettingsError(f"the {what} must be a whole number from {least} to {MOST_PANELS}, not {value!r}")
+
+
+def _path(name: str, value: object) -> Path | None:
+    if value is None:
+        return None
+    if not isinstance(value, str | os.PathLike) or not str(value):
+        raise SettingsError(f"the {name} must be the name of a file, not {value!r}")
+    return Path(value)
+
+
+def _words(value: object) -> tuple[str, ...] | None:
+    if value is None:
+        return None
+    given = value.split(",") if isinstance(value, str) else value
+    words = tuple(str(word).strip() for word in given) if isinstance(given, Iterable) else ()
+    if not words or not all(words):
+        raise SettingsError(f"faces are chosen by names, layers, colors or numbers, not by {value!r}")
+    return words
+
+
+def _grid(value: object) -> tuple[int, int] | None:
+    if value is None:
+        return None
+    counts = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else ()
+    if len(counts) != 2:
+        raise SettingsError(f"a grid is two numbers of panels, like (20, 10), not {value!r}")
+    for count in counts:
+        _require_count("number of panels along a side of the grid", count, least=1)
+    if int(counts[0]) * int(counts[1]) > MOST_PANELS:
+        raise SettingsError(f"a grid may have {MOST_PANELS} panels, not {int(counts[0]) * int(counts[1])}")
+    return int(counts[0]), int(counts[1])
+
+
+def _stations(value: object) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    given = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else []
+    if not given or not all(_is_positive(place) for place in given):
+        raise SettingsError(f"stations are positive lengths along the strip in mm, like (1200, 2400), not {value!r}")
+    places = tuple(float(place) for place in given)
+    if any(second <= first for first, second in pairwise(places)):
+        raise SettingsError("stations must rise from one to the next")
+    return places

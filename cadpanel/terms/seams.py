@@ -1,0 +1,139 @@
+"""Seams as the terms see them: batches that are alike, with the places of the points that meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.boundary import ARC_SHARES, Edge
+from cadpanel.features.layout import Layout
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+# Where on a straight edge points are held to a curved one, as shares of its length.
+_STRAIGHT_SHARES = (1 / 4, 1 / 2, 3 / 4)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamBatch:
+    """Seams of one kind, each with the lower panel first.
+
+    Attributes:
+        index: (s,) their places among all seams.
+        panels: (s, 2).
+        edges: (s, 2) which edge of each panel; an end's number is that of its cut plane.
+        pair: (s,) which pair of coupled blocks.
+        reversed: (s,) whether the second edge runs against the first.
+        corners: (s, 2, m) corners that meet, by their places among the panels' corners, in the order of the first edge.
+        curved: for each of the two edges which of its pieces are arcs, in the edge's own direction.
+        alike: whether both edges have the same pieces; then all their corners meet, else only the outermost.
+    """
+
+    index: IntArray
+    panels: IntArray
+    edges: IntArray
+    pair: IntArray
+    reversed: NDArray[np.bool_]
+    corners: IntArray
+    curved: tuple[tuple[bool, ...], tuple[bool, ...]]
+    alike: bool
+
+    def straight(self, side: int) -> bool:
+        """Whether the edges of the first (0) or second (1) panels are segments."""
+        return self.curved[side] == (False,)
+
+    def in_first_order(self, values: Array) -> Array:
+        """Values (s, R, ...) along the second edges, put in the order of the first edges."""
+        if self.reversed.any():
+            values = values.copy()
+            values[self.reversed] = values[self.reversed, ::-1]
+        return values
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Movers:
+    """Points of one panel of each seam of a batch that are held to the other panel's edge.
+
+    A point lies between two points of the panel's boundary (its corners, then its arc points).
+
+    Attributes:
+        places: (s, q, 2) which two.
+        share: (q,) how far on the way from the first to the second.
+    """
+
+    places: IntArray
+    share: Array
+
+
+def batches(
+    layout: Layout, panels: IntArray, edges: IntArray, backwards: NDArray[np.bool_], pair: IntArray
+) -> tuple[SeamBatch, ...]:
+    """Group seams that are alike.
+
+    Args:
+        layout: the panels' features.
+        panels: (seams, 2), the lower first.
+        edges: (seams, 2).
+        backwards: (seams,) whether the second edge runs against the first.
+        pair: (seams,).
+    """
+    kinds: dict[tuple[tuple[bool, ...], tuple[bool, ...], bool], list[int]] = {}
+    features = layout.feature_of
+    for seam in range(len(panels)):
+        one, other = (features[p].edges[e].curved for p, e in zip(panels[seam], edges[seam], strict=True))
+        turned = other[::-1] if backwards[seam] else other
+        kinds.setdefault((one, other, turned == one), []).append(seam)
+    found = []
+    for (one, other, alike), members in kinds.items():
+        index = np.array(members, dtype=np.intp)
+        corners = []
+        for seam in members:
+            first, second = (list(features[p].edges[e].corners) for p, e in zip(panels[seam], edges[seam], strict=True))
+            second = second[::-1] if backwards[seam] else second
+            corners.append((first, second) if alike else ([first[0], first[-1]], [second[0], second[-1]]))
+        found.append(
+            SeamBatch(
+                index=index,
+                panels=panels[index],
+                edges=edges[index],
+                pair=pair[index],
+                reversed=backwards[index],
+                corners=np.array(corners, dtype=np.intp),
+                curved=(one, other),
+                alike=alike,
+            )
+        )
+    return tuple(found)
+
+
+def arc_places(layout: Layout, batch: SeamBatch, side: int) -> IntArray:
+    """(s, q) the arc points of the batch's edges on one side, by their places among the panels' arc points."""
+    features = layout.feature_of
+    rows = [features[p].edges[e].arcs for p, e in zip(batch.panels[:, side], batch.edges[:, side], strict=True)]
+    return np.array(rows, dtype=np.intp).reshape(len(rows), -1)
+
+
+def movers(layout: Layout, batch: SeamBatch, side: int) -> Movers:
+    """Inner corners and arc points of the edges on one side, or points on the segment where they are straight."""
+    features = layout.feature_of
+    corner_count = max(group.feature.corner_count for group in layout.groups)
+    rows = []
+    for p, e in zip(batch.panels[:, side], batch.edges[:, side], strict=True):
+        rows.append(_places(features[p].edges[e], corner_count))
+    share = np.array(_STRAIGHT_SHARES if batch.straight(side) else [0.0] * len(rows[0]))
+    return Movers(places=np.array(rows, dtype=np.intp), share=share)
+
+
+def _places(edge: Edge, corner_count: int) -> list[tuple[int, int]]:
+    if edge.straight:
+        return [(edge.corners[0], edge.corners[-1])] * len(_STRAIGHT_SHARES)
+    return [(c, c) for c in edge.corners[1:-1]] + [(corner_count + a, corner_count + a) for a in edge.arcs]
+
+
+def arc_patches(curved: Sequence[bool]) -> IntArray:
+    """(q,) the piece that each arc point of an edge lies on."""
+    return np.array([i for i, arc in enumerate(curved) if arc for _ in ARC_SHARES], dtype=np.intp)

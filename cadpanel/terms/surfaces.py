@@ -1,0 +1,176 @@
+"""Patches and cut planes of all panels in arrays, whatever their features, and how they follow the unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.feature import Feature
+from cadpanel.features.layout import Layout
+from cadpanel.features.skin import patch_outer
+from cadpanel.features.walk import Walk, cut_plane_rates, cut_planes
+from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
+from cadpanel.geometry.frames import dot
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+BoolArray = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Surfaces:
+    """Patches of all panels, K at most, each in its panel's frame.
+
+    Attributes:
+        p, t, n: (panels, K, 3) the rulings that the patches are measured at.
+        radius, half_angle: (panels, K), 0 for planes.
+        curved: (panels, K) whether it is a cone or cylinder.
+        outer: (panels, K, 8, size) how their inner numbers follow the unknowns, or None without derivatives.
+        count, anchor: (panels,) number of patches, and which of them the walk starts in.
+        sweep: (panels, K), 0 for planes.
+        ruling_p, ruling_b, ruling_t, ruling_n: (panels, K + 1, 3) the bounding rulings; of a polygon its plane, once.
+        anchor_p, anchor_b: (panels, 3) the ruling in the middle of the anchor patch.
+    """
+
+    p: Array
+    t: Array
+    n: Array
+    radius: Array
+    half_angle: Array
+    sweep: Array
+    curved: BoolArray
+    outer: Array | None
+    count: IntArray
+    anchor: IntArray
+    ruling_p: Array
+    ruling_b: Array
+    ruling_t: Array
+    ruling_n: Array
+    anchor_p: Array
+    anchor_b: Array
+
+    def assign(self, x: Array, panel: IntArray) -> IntArray:
+        """(g, q) the patch of each point x (g, q, 3) in the frame of its panel (g,); see `features.skin.assign`."""
+
+        def past(p: Array, b: Array) -> BoolArray:
+            return np.asarray(dot(x - p[:, None], b[:, None]) > 0.0)
+
+        right = past(self.anchor_p[panel], self.anchor_b[panel])
+        anchor, count = self.anchor[panel, None], self.count[panel, None]
+        beyond = [past(self.ruling_p[panel, i], self.ruling_b[panel, i]) for i in range(self.p.shape[1])]
+        patch = np.broadcast_to(anchor, right.shape).copy()
+        passed = right
+        for i in range(1, self.p.shape[1]):
+            asked = (i > anchor) & (i < count)
+            passed = np.where(asked, passed & beyond[i], passed)
+            patch += asked & passed
+        passed = ~right
+        for i in range(self.p.shape[1] - 1, 0, -1):
+            asked = i <= anchor
+            passed = np.where(asked, passed & ~beyond[i], passed)
+            patch -= asked & passed
+        return patch
+
+    def distance(self, x: Array, panel: IntArray, patch: IntArray) -> tuple[Array, Array]:
+        """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,), and its inner derivative."""
+        shape = patch.shape
+        owner = np.broadcast_to(panel[:, None], shape).reshape(-1)
+        which = patch.reshape(-1)
+        points = np.moveaxis(x.reshape(-1, 1, 3), 2, 0)
+        p, t, n = (axis[owner, which] for axis in (self.p, self.t, self.n))
+        round_, inner = cone_distance_inner(points, p, t, n, self.radius[owner, which], self.half_angle[owner, which])
+        flat, flat_inner = plane_distance(points, p, n), plane_inner(points, n)
+        curved = self.curved[owner, which][:, None]
+        distance = np.where(curved, round_, flat)
+        return distance.reshape(shape), np.where(curved[..., None], inner, flat_inner).reshape(*shape, -1)
+
+
+def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:
+    """The patches of all panels."""
+    parts = [_surfaces(walked) for walked in walks]
+    outers = [part.outer for part in parts if part.outer is not None]
+    merged = {
+        one.name: layout.gather([getattr(part, one.name) for part in parts])
+        for one in fields(Surfaces)
+        if one.name != "outer"
+    }
+    return Surfaces(**merged, outer=layout.gather(outers) if len(outers) == len(parts) else None)
+
+
+def _surfaces(walked: Walk) -> Surfaces:
+    feature, carriers = walked.feature, walked.carriers
+    panels, patches = carriers.p.shape[:2]
+    numbers = np.zeros((3, panels, patches))
+    for i, curved in enumerate(feature.curved):
+        if curved:
+            numbers[:, :, i] = walked.values[:, feature.patch_slice(i)].T
+    outer = None
+    if carriers.twist is not None:
+        outer = np.stack([feature.by_unknowns(patch_outer(walked, i)) for i in range(patches)], axis=1)
+    rulings = walked.edges if walked.edges.p.shape[1] else walked.anchor
+    return Surfaces(
+        p=carriers.p,
+        t=carriers.t,
+        n=carriers.n,
+        radius=numbers[0],
+        half_angle=numbers[1],
+        sweep=numbers[2],
+        curved=np.broadcast_to(np.array(feature.curved), (panels, patches)),
+        outer=outer,
+        count=np.full(panels, patches),
+        anchor=np.full(panels, feature.anchor),
+        ruling_p=rulings.p,
+        ruling_b=rulings.b,
+        ruling_t=rulings.t,
+        ruling_n=rulings.n,
+        anchor_p=walked.anchor.p[:, 0],
+        anchor_b=walked.anchor.b[:, 0],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class CutPlanes:
+    """Cut planes m . x = s of all panels, m of unit length; 0 for polygons, which have none.
+
+    Attributes:
+        m: (panels, 2, 3).
+        s: (panels, 2).
+        dm: (panels, 2, 3, size) how m follows the unknowns, or None without derivatives.
+        ds: (panels, 2, size).
+    """
+
+    m: Array
+    s: Array
+    dm: Array | None
+    ds: Array | None
+
+
+def cut_planes_of(layout: Layout, walks: Sequence[Walk]) -> CutPlanes:
+    """The cut planes of all panels."""
+    parts = [_cut_planes(walked) for walked in walks]
+    m, s = layout.gather([part.m for part in parts]), layout.gather([part.s for part in parts])
+    dm, ds = [part.dm for part in parts if part.dm is not None], [part.ds for part in parts if part.ds is not None]
+    known = len(dm) == len(parts)
+    return CutPlanes(m, s, layout.gather(dm) if known else None, layout.gather(ds) if known else None)
+
+
+def _cut_planes(walked: Walk) -> CutPlanes:
+    feature, panels = walked.feature, len(walked.values)
+    derivatives = walked.carriers.twist is not None
+    if not isinstance(feature, Feature):
+        count = len(feature.free)
+        slopes = (np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))) if derivatives else (None, None)
+        return CutPlanes(np.zeros((panels, 2, 3)), np.zeros((panels, 2)), *slopes)
+    m, s = cut_planes(walked)
+    size = np.sqrt(dot(m, m))
+    unit, place = m / size[..., None], s / size
+    if not derivatives:
+        return CutPlanes(unit, place, None, None)
+    dm, ds = (feature.by_unknowns(rates) for rates in cut_plane_rates(walked))
+    growth = (unit[..., None, :] @ dm)[..., 0, :]
+    dm = (dm - unit[..., None] * growth[..., None, :]) / size[..., None, None]
+    ds = (ds - place[..., None] * growth) / size[..., None]
+    return CutPlanes(unit, place, dm, ds)

@@ -1,0 +1,116 @@
+"""Dirty files: mended with a note, or refused with the face and a remedy, and never a wrong panel without a word."""
+
+import numpy as np
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_Transform
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Pnt, gp_Trsf
+from OCP.TopAbs import TopAbs_FACE
+
+from cadpanel.brep.loading import load_model
+from cadpanel.brep.model import Label, compound_of, shapes_of
+from cadpanel.brep.read import read_raw_panels, read_reference
+from cadpanel.errors import CadpanelError
+from cadpanel.reference.settings import ReferenceSettings
+from tests.brep.test_network import quads, write_mesh
+from tests.model_files import STRIP, Labelled, strip_faces, write_labelled, write_shape
+from tests.reference_shapes import Lip, kernel_face
+
+LIP = Lip(length=6000.0, twist=1.0, taper=0.02)
+FAR = (8.3e8, -2.1e8, 4.0e5)
+
+
+def moved(shape, by):
+    shift = gp_Trsf()
+    shift.SetTranslation(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(*by))
+    return BRepBuilderAPI_Transform(shape, shift, True).Shape()
+
+
+def how(**settings):
+    return ReferenceSettings(unit="mm", **settings)
+
+
+def test_map_grid_coordinates_give_the_same_panels_and_a_note(tmp_path):
+    faces = compound_of(strip_faces(LIP))
+    near = read_reference(write_shape(tmp_path / "near.brep", faces), how(divide=3))
+    far = read_reference(write_shape(tmp_path / "far.brep", moved(faces, FAR)), how(divide=3))
+    assert near.notes == ()
+    (note,) = far.notes
+    assert "km from its origin; all coordinates here are less by (8" in note
+    for here, there in zip(near.panels, far.panels, strict=True):
+        assert here.name == there.name
+        assert there.length == pytest.approx(here.length, abs=1e-4)
+    assert far.seams == near.seams
+
+
+def test_mesh_beside_a_model_far_away_is_moved_with_it(tmp_path):
+    corners, faces = quads(6, 2)
+    mesh = write_mesh(tmp_path / "mesh.obj", corners + FAR, faces)
+    path = write_shape(tmp_path / "far.brep", moved(kernel_face(STRIP, poles=40), FAR))
+    assert len(read_raw_panels(path, how(mesh=mesh)).panels) == 12
+
+
+def test_inch_file_is_read_in_millimetres_whatever_the_format(tmp_path):
+    parts: list[Labelled] = [(Label(name=f"f{k}"), face, []) for k, face in enumerate(strip_faces(LIP))]
+    lengths = [
+        [
+            panel.length
+            for panel in read_reference(
+                write_labelled(tmp_path / name, parts, "INCH"), ReferenceSettings(divide=3)
+            ).panels
+        ]
+        for name in ("inch.step", "inch.iges")
+    ]
+    np.testing.assert_allclose(lengths, 2000.0, rtol=0.02)
+
+
+def test_three_hundred_control_points_each_way_are_cut(tmp_path):
+    wavy = kernel_face(LIP, (0.0, 1.0), poles=300)
+    panels = read_raw_panels(write_shape(tmp_path / "fine.brep", wavy), how(divide=4)).panels
+    assert len(panels) == 4
+
+
+def test_sphere_with_poles_and_seam_is_cut_by_a_grid_into_panels_that_cover_it(tmp_path):
+    ball = BRepPrimAPI_MakeSphere(700.0).Shape()
+    (face,) = shapes_of(ball, TopAbs_FACE)
+    panels = read_raw_panels(write_shape(tmp_path / "ball.brep", face), how(grid=(6, 4))).panels
+    assert len(panels) == 24
+    area = sum(samples.weights.sum() for panel in panels for samples in panel.faces)
+    assert area == pytest.approx(4.0 * np.pi * 700.0**2, rel=1e-3)
+
+
+def test_flipped_and_doubled_faces_change_nothing_but_the_notes(tmp_path):
+    faces = strip_faces(LIP)
+    clean = read_reference(write_shape(tmp_path / "clean.brep", compound_of(faces)), how(divide=3))
+    dirty = [faces[2].Reversed(), faces[0], faces[1], faces[1].Reversed()]
+    read = read_reference(write_shape(tmp_path / "dirty.brep", compound_of(dirty)), how(divide=3))
+    assert [panel.name for panel in read.panels] == [panel.name for panel in clean.panels]
+    for here, there in zip(clean.panels, read.panels, strict=True):
+        np.testing.assert_allclose(here.corners, there.corners, atol=1e-6)
+    assert any("lies on face" in note for note in read.notes)
+
+
+def test_solid_needs_its_outer_faces_chosen(tmp_path):
+    ball = BRepPrimAPI_MakeSphere(700.0).Shape()
+    path = write_shape(tmp_path / "ball.brep", ball)
+    with pytest.raises(CadpanelError, match=r"holds a solid, of which face 1 is one: say which of its faces"):
+        read_raw_panels(path, how(grid=(4, 4)))
+    assert len(read_raw_panels(path, how(grid=(4, 4), faces=("1",))).panels) == 16
+
+
+def test_curves_beside_faces_are_told(tmp_path):
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(100.0, 0.0, 0.0)).Edge()
+    path = write_shape(tmp_path / "both.brep", compound_of([compound_of(strip_faces(LIP)), compound_of([line])]))
+    assert any("1 loose curves, which are no panels" in note for note in read_raw_panels(path, how()).notes)
+
+
+def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):
+    def blade(angle):
+        way = np.array([np.cos(angle), np.sin(angle), 0.0])
+        return lambda u, v: 1000.0 * v[..., None] * way + np.stack([0.0 * u, 0.0 * u, 500.0 * u], axis=-1)
+
+    star = [kernel_face(blade(angle), (0.0, 1.0)) for angle in (0.0, 2.0, 4.0)]
+    path = write_shape(tmp_path / "star.brep", compound_of(star))
+    with pytest.raises(CadpanelError, match=r"The surface of faces 1, 2 and 3 is no strip that could be divided"):
+        read_raw_panels(path, how(divide=2))
+    assert len(load_model(path, 1.0).faces()) == 3

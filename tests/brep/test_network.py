@@ -1,0 +1,243 @@
+import re
+
+import numpy as np
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
+from OCP.GeomAbs import GeomAbs_C2
+from OCP.GeomAPI import GeomAPI_PointsToBSpline
+from OCP.gp import gp_Pln, gp_Pnt
+from OCP.TColgp import TColgp_Array1OfPnt
+
+from cadpanel.brep.model import compound_of
+from cadpanel.brep.read import read_raw_panels, read_reference
+from cadpanel.brep.split import area_of
+from cadpanel.brep.subdivide.places import Link, place_names
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
+from tests.model_files import STRIP, strip_faces, write_shape
+from tests.reference_shapes import kernel_face
+
+LOST = 1e-3  # part of the area to which a panel's samples weigh it
+POINTS = 41
+
+
+def curve(points):
+    array = TColgp_Array1OfPnt(1, len(points))
+    for index, point in enumerate(points.tolist(), start=1):
+        array.SetValue(index, gp_Pnt(*point))
+    return BRepBuilderAPI_MakeEdge(GeomAPI_PointsToBSpline(array, 3, 8, GeomAbs_C2, 1e-4).Curve()).Edge()
+
+
+def across(v, lift=0.0, start=0.0, stop=3.0):
+    u = np.linspace(start, stop, POINTS)
+    return curve(STRIP(u, np.full(POINTS, v)) + np.array([0.0, 0.0, lift]))
+
+
+def along(u, start=0.0, stop=1.0):
+    return curve(STRIP(np.full(POINTS, u), np.linspace(start, stop, POINTS)))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("network")
+
+
+def raw(folder, faces, curves, **how):
+    skin = write_shape(folder / "skin.brep", compound_of(faces))
+    lines = write_shape(folder / "lines.brep", compound_of(curves))
+    return read_raw_panels(skin, ReferenceSettings(unit="mm", network=lines, **how))
+
+
+def weight(panel):
+    return sum(face.weights.sum() for face in panel.faces)
+
+
+def assert_covers(panels, faces):
+    assert sum(map(weight, panels)) == pytest.approx(sum(map(area_of, faces)), rel=LOST)
+    assert len({panel.name for panel in panels}) == len(panels)
+
+
+@pytest.mark.parametrize("lift", [0.0, 0.003, 0.5])
+def test_curves_near_a_strip_of_three_faces_cut_it_into_panels(folder, lift):
+    faces = strip_faces()
+    found = raw(folder, faces, [across(v, lift) for v in (0.2, 0.45, 0.8)])
+    assert [panel.name for panel in found.panels] == ["S1-01", "S1-02", "S1-03", "S1-04"]
+    assert [len(panel.faces) for panel in found.panels] == [3] * 4
+    assert_covers(found.panels, faces)
+    said = [re.search(r"lie up to ([\d.]+) mm off the surface", note) for note in found.notes]
+    (offset,) = [float(match[1]) for match in said if match]
+    # The curves themselves follow the formula to a tenth of a millimetre only.
+    assert lift <= offset <= lift + 0.15
+
+
+def test_curve_that_ends_farther_from_the_outline_than_the_tolerance_is_refused_until_that_is_raised(folder):
+    faces = strip_faces()
+    with pytest.raises(ReferenceFileError, match=r"separates no two panels near"):
+        raw(folder, faces, [across(0.5, stop=2.997)])
+    assert len(raw(folder, faces, [across(0.5, stop=2.997)], seam_tolerance=4.0).panels) == 2
+
+
+def test_curve_that_sticks_out_beyond_another_one_by_less_than_the_tolerance_is_fine(folder):
+    face = kernel_face(STRIP, poles=40)
+    found = raw(folder, [face], [along(1.5), across(0.7, stop=1.5005)])
+    assert len(found.panels) == 3
+    assert_covers(found.panels, [face])
+    assert all(len(edge) >= 33 for panel in found.panels for face in panel.faces for edge in face.edges)
+
+
+def test_curve_along_the_border_between_two_faces_parts_them(folder):
+    faces = strip_faces()
+    found = raw(folder, faces, [along(1.0)])
+    assert sorted(len(panel.faces) for panel in found.panels) == [1, 2]
+    assert_covers(found.panels, faces)
+
+
+def test_neighbours_share_their_ends(folder):
+    faces = strip_faces()
+    raw(folder, faces, [across(v) for v in (0.2, 0.45, 0.8)])
+    reference = read_reference(folder / "skin.brep", ReferenceSettings(unit="mm", network=folder / "lines.brep"))
+    assert [seam.panels for seam in reference.seams] == [(0, 1), (1, 2), (2, 3)]
+
+
+def test_crossing_curves_cut_one_face_into_rows_and_columns(folder):
+    face = kernel_face(STRIP, poles=40)
+    found = raw(folder, [face], [*map(across, (0.2, 0.4, 0.6, 0.8)), along(1.0), along(2.0)])
+    assert len(found.panels) == 15
+    assert {panel.name for panel in found.panels} == {f"S1-R0{r}-C0{c}" for r in (1, 2, 3) for c in range(1, 6)}
+    assert_covers(found.panels, [face])
+
+
+def test_order_of_the_curves_changes_nothing(folder):
+    face = kernel_face(STRIP, poles=40)
+    curves = [across(0.3), across(0.7), along(1.5)]
+    first, second = (raw(folder, [face], order).panels for order in (curves, curves[::-1]))
+    assert [panel.name for panel in first] == [panel.name for panel in second]
+    for one, other in zip(first, second, strict=True):
+        assert weight(one) == pytest.approx(weight(other), rel=1e-9)
+
+
+def test_curves_of_the_same_file_cut_its_surface(folder):
+    faces = strip_faces()
+    path = write_shape(folder / "both.brep", compound_of([compound_of(faces), across(0.5)]))
+    found = read_raw_panels(path, ReferenceSettings(unit="mm", network=path))
+    assert [panel.name for panel in found.panels] == ["S1-01", "S1-02"]
+
+
+def test_curve_that_ends_inside_a_panel_is_refused_with_its_place(folder):
+    face = kernel_face(STRIP, poles=40)
+    with pytest.raises(
+        ReferenceFileError, match=r"Curve 2 of 'lines.brep' separates no two panels near \(.*draw it on"
+    ):
+        raw(folder, [face], [across(0.3), across(0.7, stop=1.4)])
+
+
+def test_curve_that_ends_at_another_one_is_fine(folder):
+    face = kernel_face(STRIP, poles=40)
+    found = raw(folder, [face], [along(1.5), across(0.7, stop=1.5)])
+    assert len(found.panels) == 3
+    assert_covers(found.panels, [face])
+
+
+def test_curve_far_from_the_surface_and_file_without_curves_are_refused(folder):
+    face = kernel_face(STRIP, poles=40)
+    with pytest.raises(ReferenceFileError, match=r"Curve 1 of 'lines.brep' lies over no surface of 'skin.brep'"):
+        raw(folder, [face], [across(0.3, lift=3000.0)])
+    with pytest.raises(ReferenceFileError, match=r"'lines.brep' holds no loose curves, only faces"):
+        raw(folder, [face], [face])
+
+
+def quads(rows, columns, move=lambda u, v: (u, v)):
+    """The corners of a grid over the strip's parameters, and its faces."""
+    places = [(3.0 * r / rows, c / columns) for r in range(rows + 1) for c in range(columns + 1)]
+    corners = np.array([STRIP(np.array(u), np.array(v)) for u, v in (move(*place) for place in places)])
+    width = columns + 1
+    faces = [
+        (r * width + c, r * width + c + 1, (r + 1) * width + c + 1, (r + 1) * width + c)
+        for r in range(rows)
+        for c in range(columns)
+    ]
+    return corners, faces
+
+
+def write_mesh(path, corners, faces):
+    if path.suffix == ".off":
+        rows = [" ".join(map(repr, corner)) for corner in corners.tolist()]
+        rows += [" ".join(map(str, (len(face), *face))) for face in faces]
+        path.write_text(f"OFF\n{len(corners)} {len(faces)} 0\n" + "\n".join(rows) + "\n")
+    else:
+        rows = ["v " + " ".join(map(repr, corner)) for corner in corners.tolist()]
+        rows += ["f " + " ".join(f"{corner + 1}//1" for corner in face) for face in faces]
+        path.write_text("# panels\n" + "\n".join(rows) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("ending", [".obj", ".off"])
+def test_mesh_makes_one_panel_a_face(folder, ending):
+    face = kernel_face(STRIP, poles=40)
+    skin = write_shape(folder / "skin.brep", face)
+    mesh = write_mesh(folder / f"mesh{ending}", *quads(6, 4))
+    found = read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=mesh))
+    assert {panel.name for panel in found.panels} == {f"S1-R0{r}-C0{c}" for r in range(1, 7) for c in range(1, 5)}
+    assert_covers(found.panels, [face])
+
+
+def test_mesh_that_leaves_a_part_of_the_surface_out_is_refused(folder):
+    skin = write_shape(folder / "skin.brep", kernel_face(STRIP, poles=40))
+    corners, faces = quads(6, 4)
+    mesh = write_mesh(folder / "part.obj", corners, faces[:-4])
+    with pytest.raises(ReferenceFileError, match=r"separates no two panels|must reach the outline of the surface"):
+        read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=mesh))
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("v 0 0 0\n", "is no OBJ or OFF mesh with faces"),
+        ("v 0 0\nf 1 1 1\n", "damaged OBJ or OFF mesh"),
+        ("v 0 0 x\n", "damaged OBJ or OFF mesh"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n", "Face 1 of 'bad.obj' has fewer than three different corners"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n", "corners that are not numbers"),
+        ("OFF\n9 1 0\n0 0 0\n", "breaks off before its last corner"),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\nf 1 2 3\n", "3 faces of 'bad.obj' share the edge"),
+    ],
+)
+def test_damaged_mesh_is_refused(folder, text, sentence):
+    skin = write_shape(folder / "plane.brep", BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 9.0, 0.0, 9.0).Face())
+    (folder / "bad.obj").write_text(text)
+    with pytest.raises(ReferenceFileError, match=sentence):
+        read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=folder / "bad.obj"))
+
+
+def grid_links(rows, columns):
+    places = np.array([(100.0 * c, 60.0 * r, 0.0) for r in range(rows) for c in range(columns)])
+    pairs = [(r * columns + c, r * columns + c + 1) for r in range(rows) for c in range(columns - 1)]
+    pairs += [(r * columns + c, (r + 1) * columns + c) for r in range(rows - 1) for c in range(columns)]
+    return places, [Link(panels=pair, middle=places[list(pair)].mean(axis=0), length=1.0) for pair in pairs]
+
+
+def test_names_of_a_grid_bent_round_a_corner_are_rows_and_columns():
+    places, links = grid_links(3, 8)
+    turn = places[:, 0] / 300.0
+    bent = np.stack([300.0 * np.sin(turn), places[:, 1], 300.0 * np.cos(turn)], axis=1)
+    names = place_names(
+        "S1", bent, [Link(panels=k.panels, middle=bent[list(k.panels)].mean(axis=0), length=1.0) for k in links]
+    )
+    assert len(set(names)) == 24
+    assert {name.split("-")[1] for name in names} == {"R01", "R02", "R03"}
+
+
+def test_names_where_panels_make_no_rows_are_numbers():
+    places, links = grid_links(3, 3)
+    odd = [*links, Link(panels=(0, 8), middle=places.mean(axis=0), length=1.0)]
+    names = place_names("S1", places, odd)
+    assert sorted(names) == [f"S1-0{k}" for k in range(1, 10)]
+
+
+def test_names_of_a_ring_go_round():
+    turn = np.linspace(0.0, 2.0 * np.pi, 6, endpoint=False)
+    places = np.stack([100.0 * np.cos(turn), 100.0 * np.sin(turn), 0.0 * turn], axis=1)
+    links = [Link(panels=(k, (k + 1) % 6), middle=places[k], length=1.0) for k in range(6)]
+    names = place_names("S1", places, links)
+    numbers = [int(name[-2:]) for name in names]
+    steps = {(numbers[(k + 1) % 6] - numbers[k]) % 6 for k in range(6)}
+    assert steps in ({1}, {5})

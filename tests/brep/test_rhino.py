@@ -1,0 +1,163 @@
+import numpy as np
+import pytest
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.TopAbs import TopAbs_FACE
+
+from cadpanel.brep.formats import opennurbs
+from cadpanel.brep.loading import load_model
+from cadpanel.brep.model import shapes_of
+from cadpanel.brep.patch import patch_of
+from cadpanel.brep.read import read_raw_panels
+from cadpanel.brep.select import select_faces
+from cadpanel.brep.split import area_of
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
+
+rhino = pytest.importorskip("rhino3dm")
+EXACT = 1e-9
+
+
+def file_in(unit="Millimeters"):
+    file = rhino.File3dm()
+    file.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, unit)
+    return file
+
+
+def written(path, file):
+    assert file.Write(str(path), 8)
+    return path
+
+
+def bent_surface(length=9000.0, rational=False):
+    """A surface of degree 3 x 1 over a bent section."""
+    surface = rhino.NurbsSurface.Create(3, rational, 4, 2, 5, 2)
+    for place, knot in enumerate((0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0)):
+        surface.KnotsU[place] = knot
+    for place, knot in enumerate((0.0, 1.0)):
+        surface.KnotsV[place] = knot
+    section = ((0.0, 0.0), (500.0, 0.0), (800.0, -100.0), (900.0, -500.0), (900.0, -900.0))
+    for i, (y, z) in enumerate(section):
+        for j, x in enumerate((0.0, length)):
+            weight = 0.8 if rational and i == 2 else 1.0
+            surface.Points[i, j] = rhino.Point4d(weight * x, weight * y, weight * z, weight)
+    return surface
+
+
+def assert_same_surface(face, source, factor=1.0):
+    patch = patch_of(face)
+    for part_u in (0.0, 0.13, 0.5, 0.77, 1.0):
+        for part_v in (0.0, 0.31, 1.0):
+            u, v = (d.T0 + p * (d.T1 - d.T0) for d, p in ((source.Domain(0), part_u), (source.Domain(1), part_v)))
+            point = source.PointAt(u, v)
+            wanted = factor * np.array([point.X, point.Y, point.Z])
+            np.testing.assert_allclose(patch.points(np.array([u, v])), wanted, atol=EXACT * max(1.0, factor))
+
+
+@pytest.mark.parametrize("rational", [False, True])
+def test_nurbs_surface_is_the_same_in_every_point(tmp_path, rational):
+    file, surface = file_in(), bent_surface(rational=rational)
+    file.Objects.AddSurface(surface)
+    (face,) = load_model(written(tmp_path / "surface.3dm", file)).faces()
+    assert_same_surface(face.face, surface)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("Millimeters", 1.0), ("Meters", 1000.0), ("Inches", 25.4), ("Feet", 304.8)]
+)
+def test_model_units_become_millimetres(tmp_path, unit, factor):
+    file, surface = file_in(unit), bent_surface(length=9.0)
+    file.Objects.AddSurface(surface)
+    path = written(tmp_path / "units.3dm", file)
+    model = load_model(path)
+    assert model.unit == unit.lower()
+    assert_same_surface(model.faces()[0].face, surface, factor)
+    with pytest.raises(ReferenceFileError, match=r"says itself that its unit is the"):
+        load_model(path, 10.0)
+
+
+def test_model_without_a_unit_needs_one(tmp_path):
+    file = file_in("None")
+    file.Objects.AddSurface(bent_surface())
+    path = written(tmp_path / "none.3dm", file)
+    with pytest.raises(ReferenceFileError, match="has no unit that can be converted"):
+        load_model(path)
+    assert load_model(path, 1000.0).unit == "none, read as 1000 mm"
+
+
+def test_solid_of_rhino_is_trimmed_and_closed(tmp_path):
+    file = file_in()
+    cylinder = rhino.Cylinder(rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 500.0), 2000.0)
+    file.Objects.AddBrep(rhino.Brep.CreateFromCylinder(cylinder, True, True))
+    file.Objects.AddBrep(rhino.Brep.CreateFromSphere(rhino.Sphere(rhino.Point3d(5000.0, 0.0, 0.0), 300.0)))
+    model = load_model(written(tmp_path / "solids.3dm", file))
+    assert all(BRepCheck_Analyzer(part.shape).IsValid() for part in model.parts)
+    areas = sorted(area_of(face, exactly=True) for face in shapes_of(model.parts[0].shape, TopAbs_FACE))
+    assert areas == pytest.approx(
+        [np.pi * 500.0**2] * 2 + [2.0 * np.pi * 500.0 * 2000.0], rel=1e-4
+    )  # trimming curves are projected to 0.01 mm
+    assert area_of(model.parts[1].shape, exactly=True) == pytest.approx(
+        4.0 * np.pi * 300.0**2, rel=1e-4
+    )  # trimming curves are projected to 0.01 mm
+
+
+def test_trimmed_plane_keeps_its_outline(tmp_path):
+    file = file_in()
+    circle = rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 700.0).ToNurbsCurve()
+    file.Objects.AddBrep(rhino.Brep.CreateTrimmedPlane(rhino.Plane.WorldXY(), circle))
+    (face,) = load_model(written(tmp_path / "disc.3dm", file)).faces()
+    assert area_of(face.face, exactly=True) == pytest.approx(np.pi * 700.0**2, rel=1e-4)
+
+
+def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_path):
+    file = file_in()
+    for name, color, visible in (("Skin", (10, 20, 30, 255), True), ("Off", (0, 0, 0, 255), False)):
+        layer = rhino.Layer()
+        layer.Name, layer.Color, layer.Visible = name, color, visible
+        file.Layers.Add(layer)
+    layers = {layer.Name: layer.Index for layer in file.Layers}
+    for name, layer, x in (("roof", "Skin", 0.0), ("old roof", "Off", 0.0), ("wall", "Skin", 20_000.0)):
+        attributes, surface = rhino.ObjectAttributes(), bent_surface()
+        attributes.Name, attributes.LayerIndex = name, layers[layer]
+        if name == "wall":
+            attributes.ColorSource = rhino.ObjectColorSource.ColorFromObject
+            attributes.ObjectColor = (255, 0, 0, 255)
+        surface.Translate(rhino.Vector3d(x, 0.0, 0.0))
+        file.Objects.AddSurface(surface, attributes)
+    file.Objects.AddPoint(1.0, 2.0, 3.0)
+    model = load_model(written(tmp_path / "layers.3dm", file))
+    assert [(f.label.name, f.label.layer, f.label.color) for f in model.faces()] == [
+        ("roof", "Skin", "#0a141e"),
+        ("wall", "Skin", "#ff0000"),
+    ]
+    assert [face.number for face in select_faces(model, ("color=#ff0000",))] == [2]
+    assert any("1 x hidden object left out" in note for note in model.notes)
+    assert any("1 x Point" in note for note in model.notes)
+
+
+def test_surface_and_curves_of_one_file_make_panels(tmp_path):
+    file = file_in()
+    surface = bent_surface()
+    file.Objects.AddSurface(surface)
+    for x in (0.25, 0.5, 0.75):
+        file.Objects.AddCurve(surface.IsoCurve(0, x))
+    path = written(tmp_path / "panels.3dm", file)
+    assert len(read_raw_panels(path, ReferenceSettings(divide=6)).panels) == 6
+    found = read_raw_panels(path, ReferenceSettings(network=path))
+    assert len(found.panels) == 4
+
+
+def test_file_that_is_cut_off_is_refused(tmp_path):
+    file = file_in()
+    file.Objects.AddSurface(bent_surface())
+    path = written(tmp_path / "whole.3dm", file)
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 3])
+    with pytest.raises(ReferenceFileError, match=r"whole.3dm"):
+        load_model(path)
+
+
+def test_control_point_without_weight_and_knots_that_fall_are_refused():
+    with pytest.raises(opennurbs.ConversionError, match="weight is not positive"):
+        opennurbs._from_homogeneous(np.array([[1.0, 2.0, 3.0, 0.0]]))
+    with pytest.raises(opennurbs.ConversionError, match="knots do not rise"):
+        opennurbs._knots([0.0, 1.0, 0.5], 1)

@@ -1,0 +1,72 @@
+import json
+from pathlib import Path
+
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.gp import gp_Pnt
+
+from cadpanel.brep.model import Label, compound_of
+from tests.cli.conftest import Run
+from tests.model_files import strip_faces, write_labelled, write_shape
+from tests.reference_shapes import Lip
+
+LIP = Lip(length=6000.0, twist=1.0, taper=0.02, flange=500.0, radius=300.0)
+
+
+@pytest.fixture(scope="module")
+def strip(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_shape(tmp_path_factory.mktemp("strip") / "strip.brep", compound_of(strip_faces(LIP)))
+
+
+@pytest.mark.parametrize(
+    "how", [("--divide", "3"), ("--stations", "2000,4000"), ("--divide", "3", "--faces", "1-3", "--lip", "1400")]
+)
+def test_fit_of_a_strip_that_is_cut_delivers_its_panels(
+    run: Run, strip: Path, tmp_path: Path, how: tuple[str, ...]
+) -> None:
+    answer = run("fit", strip, "--unit", "mm", *how, "--out", tmp_path / "out", "--quiet")
+    assert answer.code in (0, 1), answer.err
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert [panel["name"] for panel in report["panels"]] == ["S1-01", "S1-02", "S1-03"]
+    assert len(report["seams"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--divide", "3", "--grid", "2x2"), "choose one of them"),
+        (("--divide", "0"), "must be a whole number from 1"),
+        (("--grid", "2"), "--grid is two numbers of panels like 20x10"),
+        (("--grid", "2x2", "--network", "lines.step"), "choose one of them"),
+        (("--stations", "a,b"), "--stations are lengths in mm"),
+        (("--by", "parameter"), "give a grid, too"),
+        (("--lip", "300"), "give the number of panels, too"),
+        (("--unit", "ell"), "there is no unit 'ell'"),
+        (("--divide", "2", "--faces", "9"), "has no face '9': it has faces 1 to 3"),
+        (("--mesh", "none.obj"), "'none.obj' does not exist"),
+        (("--network", "none.step"), "'none.step' does not exist"),
+        (("--stations", "1000", "--spine", "none.step"), "'none.step' does not exist"),
+    ],
+)
+@pytest.mark.parametrize("command", ["fit", "compare"])
+def test_options_that_contradict_each_other_or_the_file_are_refused(
+    run: Run, strip: Path, tmp_path: Path, command: str, words: tuple[str, ...], sentence: str
+) -> None:
+    answer = run(command, strip, *words, "--out", tmp_path / "out")
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert sentence.lower() in answer.err.lower()
+    assert not (tmp_path / "out").exists()
+
+
+def test_spine_of_another_file_carries_the_stations(run: Run, tmp_path: Path) -> None:
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(6000.0, 0.0, 0.0)).Edge()
+    spine = write_labelled(tmp_path / "spine.step", [(Label(name="spine"), line, [])])
+    skin = write_labelled(
+        tmp_path / "skin.step", [(Label(name=f"f{k}"), face, []) for k, face in enumerate(strip_faces(LIP))]
+    )
+    out = tmp_path / "out"
+    answer = run("fit", skin, "--stations", "1500,4000", "--spine", spine, "--out", out, "--quiet", "--method", "local")
+    assert answer.code in (0, 1), answer.err
+    report = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    assert [panel["name"] for panel in report["panels"]] == ["S1-01", "S1-02", "S1-03"]

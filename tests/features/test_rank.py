@@ -1,0 +1,71 @@
+"""Features whose unknowns depend on each other are refused when they are made, and told by name."""
+
+import re
+
+import pytest
+
+from cadpanel.errors import SettingsError
+from cadpanel.features.feature import Feature
+from cadpanel.features.patches import Cone, Cylinder, Plane
+
+
+def named_dependent(make):
+    """The unknowns that the refusal names."""
+    with pytest.raises(SettingsError, match="depend on each other, so that no fit could tell them apart") as refused:
+        make()
+    found = re.search(r"apart: (.*); fix one of them", str(refused.value))
+    assert found is not None
+    return set(found.group(1).split(", "))
+
+
+def test_two_planes_after_each_other_are_refused_by_their_widths_and_turns():
+    names = named_dependent(lambda: Feature(Plane(), Plane()))
+    assert names
+    assert all(re.fullmatch(r"patch [01]: (width|turn)", name) for name in names)
+    assert {name[:7] for name in names} == {"patch 0", "patch 1"}
+
+
+def test_a_fold_between_two_planes_and_another_is_refused_for_the_planes_only():
+    names = named_dependent(lambda: Feature(Plane(), Cone(), Plane(), Plane()))
+    assert {name[:7] for name in names} == {"patch 2", "patch 3"}
+
+
+def test_one_plane_after_another_whose_ruling_is_fixed_in_it_passes():
+    """With its width and turn given, the ruling between the two is no matter of the fit."""
+    assert len(Feature(Plane(width=200.0, turn=0.0), Plane()).free) == 5 + 2 + 4
+
+
+def test_a_cone_that_does_not_turn_is_refused_by_its_radius_and_half_angle():
+    names = named_dependent(lambda: Feature(Plane(), Cone(sweep=0.0), Plane()))
+    assert names & {"patch 1: radius", "patch 1: half_angle"}
+    assert not any(name.startswith("cut") for name in names)
+
+
+def test_two_cylinders_of_one_radius_are_refused_by_their_sweeps():
+    names = named_dependent(lambda: Feature(Cylinder(radius=200.0), Cylinder(radius=200.0)))
+    assert {"patch 0: sweep", "patch 1: sweep"} <= names
+
+
+def test_two_cylinders_of_two_radii_pass():
+    assert len(Feature(Cylinder(radius=200.0), Cylinder(radius=300.0)).free) == 5 + 2 + 6
+
+
+@pytest.mark.parametrize("length", [1.0, 37.0, 2000.0, 1e5])
+def test_fixed_lengths_of_any_size_pass(length):
+    of = Feature(Plane(width=length), Cone(radius=1.5 * length), Plane(width=0.1 * length))
+    assert len(of.free) == 18 - 3
+
+
+def test_a_radius_that_is_held_on_the_concave_side_passes():
+    assert len(Feature(Plane(), Cone(radius=-300.0), Plane()).free) == 17
+
+
+@pytest.mark.parametrize("cuts", ["mitre", "upright", "parallel", "square"])
+def test_a_plane_alone_may_be_cut_in_any_way(cuts):
+    """Where the width's turn says what the cut's skew says, there is none to spare."""
+    assert len(Feature(Plane(turn=0.0), cuts=cuts).free) > 0
+
+
+def test_a_feature_that_leaves_nothing_of_its_patches_to_the_fit_still_has_a_place():
+    of = Feature(Plane(width=100.0, turn=0.0), Cylinder(radius=50.0, sweep=0.5), Plane(width=100.0, turn=0.0))
+    assert all(of.numbers[i].name.startswith(("anchor", "cut")) for i in of.free)

@@ -1,0 +1,331 @@
+"""Problems at some unknowns, told in other words; terms; and what the laws of terms measure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from cadpanel.features.catalogue import PanelFeature, feature
+from cadpanel.features.feature import Feature
+from cadpanel.features.layout import Layout
+from cadpanel.features.polygon import Polygon
+from cadpanel.fitting.problem import Problem
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.solver.blocks import Normal
+from cadpanel.terms.arc import ArcGap
+from cadpanel.terms.deviation import Deviation
+from cadpanel.terms.drift import DriftLimit, Limited, Outline
+from cadpanel.terms.gap import CornerGap
+from cadpanel.terms.mixed import MixedGap
+from cadpanel.terms.rows import Rows, Term
+from cadpanel.terms.seams import batches
+from cadpanel.terms.state import State
+from tests.chains import FEATURES, made_problem, mixed_unknowns, problem_of
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+STEP = 1e-6
+# Central differences with this step, relative to the largest derivative.
+DIFFERENCES = 1e-6
+# Sums of the same numbers in another order, relative to the largest.
+ROUNDING = 1e-11
+
+
+HELD = (CornerGap, ArcGap, MixedGap, DriftLimit)
+
+
+class Together:
+    """Terms of one kind, one for each batch of seams, as one term."""
+
+    def __init__(self, problem: Problem, parts: Sequence[Term]) -> None:
+        self.panels, self.parts = problem.panels, tuple(parts)
+
+    def cost(self, state: State) -> Array:
+        return sum((part.cost(state) for part in self.parts), np.zeros(self.panels))
+
+    def add_to(self, normal: Normal, state: State) -> Array:
+        return sum((part.add_to(normal, state) for part in self.parts), np.zeros(self.panels))
+
+    def residual(self, state: State) -> Array:
+        """(q,) what the rows' residuals are, in their order, from the distances and vectors that the terms tell of."""
+        found = [np.zeros(0)]
+        for part in self.parts:
+            if isinstance(part, Deviation):
+                weighted = part.roots * part.distances(state)[0]
+                found += [weighted[group.panels].reshape(-1) for group in state.layout.groups]
+            if isinstance(part, HELD):
+                found.append((part.hold.roots()[..., None] * part.vectors(state)).reshape(-1))
+        return np.concatenate(found)
+
+    def rows(self, state: State) -> list[Rows]:
+        return [rows for part in self.parts for rows in part.rows(state)]
+
+
+TERMS: dict[str, Callable[[Problem], list[Term]]] = {
+    "deviation": lambda problem: [problem.deviation],
+    "corner gap": lambda problem: list(problem.corner_gaps(1.0)),
+    "arc gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, ArcGap)],
+    "mixed gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, MixedGap)],
+    "drift along": lambda problem: list(problem.drift_limits(FitSettings(), 0.0)[:1]),
+    "drift across": lambda problem: list(problem.drift_limits(FitSettings(), 0.0)[1:]),
+}
+
+
+def applies(term: str, name: str) -> bool:
+    """Whether a term has anything to say of a strip of one feature, every third seam of which is reversed."""
+    curved = FEATURES[name].curved
+    return {
+        "arc gap": any(curved),
+        # Turned round, an end is not alike unless it is a palindrome.
+        "mixed gap": curved != curved[::-1],
+    }.get(term, True)
+
+
+def made_term(term: str, problem: Problem, seed: int | None = None) -> Together:
+    """The term, its weights shaken where a seed is given, so that no two rows weigh the same."""
+    parts = TERMS[term](problem)
+    if seed is not None:
+        random = np.random.default_rng(seed)
+        for part in parts:
+            if isinstance(part, HELD):
+                part.hold.weight = random.uniform(0.5, 2.0, part.hold.weight.shape)
+    return Together(problem, parts)
+
+
+@dataclass
+class Case:
+    """A problem at some unknowns."""
+
+    problem: Problem
+    unknowns: Array
+
+
+def case_of(name: str, seed: int, *, panels: int = 4, ring: bool = False) -> Case:
+    """A strip or ring of one feature at the unknowns that its samples and outline lie near to."""
+    problem = made_problem(FEATURES[name], seed, panels=panels, ring=ring)
+    return Case(problem, mixed_unknowns(problem.layout, seed))
+
+
+MIXED: tuple[PanelFeature, ...] = (
+    feature("plane-cone-plane"),
+    feature("planar-quadrilateral"),
+    feature("cylinder"),
+    feature("tri-cone"),
+    Polygon(6),
+    feature("plane-cone-plane"),
+)
+# Panel and edge of either side; an edge is end 0, end 1, side 0 or side 1 of a chain.
+_MIXED_SEAMS = (
+    ((0, 1), (1, 0)),  # a fold's end against a straight one
+    ((1, 2), (3, 2)),  # sides
+    ((2, 3), (1, 0)),  # two ends, one patch against three
+    ((3, 4), (1, 4)),  # an end against a polygon's edge
+    ((0, 4), (3, 2)),  # a side against a polygon's edge
+    ((0, 3), (0, 1)),  # two ends of three patches, which are curved elsewhere
+    ((0, 1), (3, 3)),  # the same two panels once more, on another edge
+    ((1, 2), (0, 0)),  # a straight end against a cylinder's
+    ((0, 5), (1, 0)),  # ends that are alike
+    ((4, 5), (0, 1)),
+)
+
+
+def mixed_case(seed: int) -> Case:
+    """Panels of several features that meet along all kinds of edges."""
+    panels, edges = zip(*_MIXED_SEAMS, strict=True)
+    problem = problem_of(MIXED, seed, panels, edges)
+    return Case(problem, mixed_unknowns(problem.layout, seed))
+
+
+def cost(term: str, case: Case) -> Array:
+    return made_term(term, case.problem).cost(case.problem.state(case.unknowns))
+
+
+def empty(problem: Problem) -> Normal:
+    """A model of the problem to add to."""
+    return Normal.zero(problem.panels, problem.layout.size, len(problem.pairs))
+
+
+def largest(values: Array) -> float:
+    return max(1.0, float(np.abs(values).max(initial=0.0)))
+
+
+def dense(rows: Sequence[Rows], problem: Problem) -> tuple[Array, Array]:
+    """Residuals (q,) and their Jacobian (q, panels x size) by all unknowns."""
+    size = problem.layout.size
+    residuals, jacobians = [np.zeros(0)], [np.zeros((0, problem.panels * size))]
+    for group in rows:
+        count, q = group.residual.shape
+        jacobian = np.zeros((count, q, problem.panels, size))
+        for panels, part in zip(group.panels, group.jacobians, strict=True):
+            for g in range(count):
+                jacobian[g, :, panels[g]] += part[g]
+        residuals.append(group.residual.reshape(-1))
+        jacobians.append(jacobian.reshape(count * q, problem.panels * size))
+    return np.concatenate(residuals), np.concatenate(jacobians)
+
+
+def jacobian_fault(made: Together, case: Case) -> float:
+    """How far the rows' Jacobian is from central differences, relative to its largest entry."""
+    problem, unknowns = case.problem, case.unknowns
+    residual, exact = dense(made.rows(problem.state(unknowns, derivatives=True)), problem)
+    assert np.abs(residual - made.residual(problem.state(unknowns))).max(initial=0.0) <= ROUNDING * largest(residual)
+    numeric = np.empty_like(exact)
+    for j in range(exact.shape[1]):
+        step = np.zeros(exact.shape[1])
+        step[j] = STEP
+        ahead, behind = (
+            made.residual(problem.state(unknowns + sign * step.reshape(unknowns.shape))) for sign in (1.0, -1.0)
+        )
+        numeric[:, j] = (ahead - behind) / (2.0 * STEP)
+    return float(np.abs(exact - numeric).max(initial=0.0)) / largest(exact)
+
+
+def assert_model_is_that_of_the_rows(made: Together, case: Case) -> None:
+    """Gradient, diagonal and coupled blocks are J^T r and J^T J of the rows, and no other blocks are coupled."""
+    problem, (panels, size) = case.problem, case.unknowns.shape
+    state = problem.state(case.unknowns, derivatives=True)
+    residual, jacobian = dense(made.rows(state), problem)
+    normal = empty(problem)
+    made.add_to(normal, state)
+    gradient = (jacobian.T @ residual).reshape(panels, size)
+    square = (jacobian.T @ jacobian).reshape(panels, size, panels, size)
+    assert np.abs(normal.gradient - gradient).max() <= ROUNDING * largest(gradient)
+    whole = np.zeros_like(square)
+    for i in range(panels):
+        whole[i, :, i] = normal.diagonal[i]
+    for (i, j), block in zip(problem.pairs, normal.coupling, strict=True):
+        whole[i, :, j], whole[j, :, i] = block, block.T
+    assert np.abs(whole - square).max() <= ROUNDING * largest(square)
+
+
+def assert_cost_is_half_the_squares(made: Together, case: Case) -> None:
+    state = case.problem.state(case.unknowns, derivatives=True)
+    residual, _ = dense(made.rows(state), case.problem)
+    booked = made.cost(case.problem.state(case.unknowns))
+    assert booked.shape == (case.problem.panels,)
+    half = 0.5 * residual @ residual
+    assert abs(booked.sum() - half) <= ROUNDING * half
+    assert np.allclose(made.add_to(empty(case.problem), state), booked, rtol=ROUNDING, atol=0.0)
+
+
+def with_seams(problem: Problem, panels: ArrayLike, edges: ArrayLike, backwards: ArrayLike) -> Problem:
+    """The same panels with other seams, (seams, 2), (seams, 2) and (seams,); the lower panel need not come first."""
+    which, along = (np.array(one, dtype=np.intp).reshape(-1, 2) for one in (panels, edges))
+    swap = which[:, 0] > which[:, 1]
+    which[swap], along[swap] = which[swap, ::-1], along[swap, ::-1]
+    pairs, pair = np.unique(which, axis=0, return_inverse=True)
+    found = batches(problem.layout, which, along, np.asarray(backwards, dtype=bool), pair.reshape(-1))
+    return replace(problem, seams=found, pairs=pairs)
+
+
+def seams_of(problem: Problem) -> tuple[IntArray, IntArray, NDArray[np.bool_]]:
+    """Panels, edges and whether they run against each other, of all seams in their order."""
+    order = np.argsort(np.concatenate([batch.index for batch in problem.seams]))
+    panels, edges = (np.concatenate([getattr(b, what) for b in problem.seams])[order] for what in ("panels", "edges"))
+    return panels, edges, np.concatenate([batch.reversed for batch in problem.seams])[order]
+
+
+def renumbered(case: Case, order: IntArray) -> Case:
+    """The same panels in another order; seams have their lower panel first again."""
+    p, where = case.problem, np.argsort(order)
+    panels, edges, backwards = seams_of(p)
+    problem = replace(
+        p,
+        layout=Layout.of([p.layout.feature_of[i] for i in order]),
+        place=replace(p.place, origins=p.place.origins[order], axes=p.place.axes[order]),
+        deviation=Deviation(np.ascontiguousarray(p.deviation.samples[:, order]), p.deviation.roots[order]),
+        outline=p.outline.take(order),
+        lengths=p.lengths[order],
+    )
+    return Case(with_seams(problem, where[panels], edges, backwards), case.unknowns[order])
+
+
+_HALF_TURN = np.array([-1.0, -1.0, 1.0])
+
+
+def flipped(case: Case, panel: int) -> Case:
+    """The same panels, one chain of them walked from its other end: both its directions turn, outwards stays."""
+    p, of = case.problem, case.problem.layout.feature_of[panel]
+    assert isinstance(of, Feature)
+    axes, samples = p.place.axes.copy(), p.deviation.samples.copy()
+    axes[panel] *= _HALF_TURN
+    samples[:, panel] *= _HALF_TURN[:, None]
+    corners, count = p.outline.corners.copy(), of.corner_count
+    corners[panel, :count] = corners[panel, :count][::-1] * _HALF_TURN
+
+    def turned(limited: Limited, held: int) -> Limited:
+        """Corners are held in the same places, the last as the first; what counts is seen in the turned frame."""
+        part = limited.part.copy()
+        part[panel, :held] = part[panel, :held][::-1] * _HALF_TURN
+        return Limited(corners=limited.corners, part=part)
+
+    panels, edges, backwards = seams_of(p)
+    here = panels == panel
+    problem = replace(
+        p,
+        place=replace(p.place, axes=axes),
+        deviation=Deviation(samples, p.deviation.roots),
+        outline=replace(
+            p.outline,
+            corners=corners,
+            along=turned(p.outline.along, count),
+            across=turned(p.outline.across, 4),
+        ),
+    )
+    unknowns = case.unknowns.copy()
+    unknowns[panel, : len(of.free)] = _turned_end_for_end(of, case.unknowns[panel, : len(of.free)])
+    return Case(with_seams(problem, panels, np.where(here, edges ^ 1, edges), backwards ^ here.any(axis=1)), unknowns)
+
+
+def _turned_end_for_end(of: Feature, unknowns: Array) -> Array:
+    """(free,) the same panel in the frame that is turned by half a turn about its normal."""
+    (old,) = of.expand(unknowns[None])
+    values = old.copy()
+    values[:5] = old[:5] * [-1.0, 1.0, -1.0, -1.0, 1.0]
+    last = len(of.patches) - 1
+    for i, curved in enumerate(of.curved):
+        signs = [1.0, -1.0, 1.0] if curved else [1.0, -1.0]
+        values[of.patch_slice(i)] = old[of.patch_slice(last - i)] * signs
+    for end in (0, 1):
+        values[of.cut_slice(end)] = old[of.cut_slice(1 - end)] * [-1.0, 1.0, -1.0]
+    turned: Array = values[of.free]
+    return turned
+
+
+def counted_from(case: Case, panel: int, corner: int) -> Case:
+    """The same panels, the corners of one polygon counted from another one."""
+    p, of = case.problem, case.problem.layout.feature_of[panel]
+    assert isinstance(of, Polygon)
+    count = of.corner_count
+    order = (np.arange(count) + corner) % count
+    corners, unknowns = p.outline.corners.copy(), case.unknowns.copy()
+    corners[panel, :count] = corners[panel, order]
+    unknowns[panel, 3 : 3 + 2 * count] = unknowns[panel, 3 : 3 + 2 * count].reshape(count, 2)[order].reshape(-1)
+    panels, edges, backwards = seams_of(p)
+    problem = replace(
+        p, outline=Outline(corners=corners, along=p.outline.along, across=p.outline.across, sided=p.outline.sided)
+    )
+    return Case(
+        with_seams(problem, panels, np.where(panels == panel, (edges - corner) % count, edges), backwards), unknowns
+    )
+
+
+def moved(case: Case, seed: int) -> Case:
+    """Everything turned (or mirrored) and shifted."""
+    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    place = case.problem.place
+    place = replace(place, origins=place.origins @ turn.T + 500.0, axes=turn @ place.axes)
+    return Case(replace(case.problem, place=place), case.unknowns)
+
+
+def twice_in_place(name: str, seed: int, edge: int) -> Case:
+    """One panel twice in the same place, and a seam between the same edge of both."""
+    problem = made_problem(FEATURES[name], seed, panels=2)
+    place = problem.place
+    place = replace(place, origins=np.repeat(place.origins[:1], 2, axis=0), axes=np.repeat(place.axes[:1], 2, axis=0))
+    problem = with_seams(replace(problem, place=place), [(0, 1)], [(edge, edge)], [False])
+    return Case(problem, np.repeat(mixed_unknowns(problem.layout, seed)[:1], 2, axis=0))

@@ -16,14 +16,13 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO
 
-from OCP.BinTools import BinTools
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.inspection import ShapeFacts, inspect
+from cadpanel.brep.model import packed, unpacked
 from cadpanel.brep.step import step_shapes
 from cadpanel.errors import DeliveryError
 
@@ -61,7 +60,7 @@ class Helper:
         try:
             found = self._receive()
             while taken := work.take():
-                self._send([(work.shapes[index][0], _packed(work.shapes[index][1])) for index in taken])
+                self._send([(work.shapes[index][0], packed(work.shapes[index][1])) for index in taken])
                 work.facts.update(zip(taken, self._receive(), strict=True))
         except (OSError, EOFError, pickle.UnpicklingError):
             self.kill()  # whatever is missing, the caller does itself
@@ -190,18 +189,6 @@ class _Work:
         return [self.facts.get(index) or inspect(*shape) for index, shape in enumerate(self.shapes)]
 
 
-def _packed(shape: TopoDS_Shape) -> bytes:
-    stream = BytesIO()
-    BinTools.Write_s(shape, stream)
-    return stream.getvalue()
-
-
-def _unpacked(data: bytes) -> TopoDS_Shape:
-    shape = TopoDS_Shape()
-    BinTools.Read_s(shape, BytesIO(data))
-    return shape
-
-
 def _serve(requests: BinaryIO, answers: BinaryIO) -> None:
     """What the second interpreter does: the file that it is told first, then every chunk that comes."""
     try:
@@ -212,7 +199,7 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> None:
                 pickle.dump(found, answers)
                 answers.flush()
                 chunk: list[tuple[str, bytes]] = pickle.load(requests)
-                found = [inspect(name, _unpacked(data)) for name, data in chunk]
+                found = [inspect(name, unpacked(data)) for name, data in chunk]
     except EOFError:
         return
 

@@ -131,11 +131,6 @@ def find_lanes(surface: Surface) -> Lanes | None:
     return _forwards(Lanes(lanes=ordered, outer=tuple(outer), joints=tuple(sorted(joints))))
 
 
-def slow_axis(patch: Patch) -> int:
-    """The parameter (0 for u, 1 for v) along which the normals of a whole patch turn more slowly."""
-    return _slow_axis(*_turning_rates(patch))
-
-
 def _turning_rates(patch: Patch) -> tuple[tuple[float, float], tuple[float, float]]:
     """By how much normals turn per length along u and v, radians a mm, and how long the patch is along them, mm."""
     parts = np.linspace(0.0, 1.0, MEASURED_LINES)

@@ -39,10 +39,6 @@ class SideContact:
         """The panel on the other side."""
         return self.panels[1] if panel == self.panels[0] else self.panels[0]
 
-    def side_of(self, panel: int) -> int:
-        """The side of that panel."""
-        return self.sides[0] if panel == self.panels[0] else self.sides[1]
-
 
 def after_flipping(
     contacts: Sequence[SideContact], sheets: Sequence[Sheet], flipped: Sequence[bool]

@@ -46,13 +46,6 @@ class SeamBatch:
         """Whether the edges of the first (0) or second (1) panels are segments."""
         return self.curved[side] == (False,)
 
-    def in_first_order(self, values: Array) -> Array:
-        """Values (s, R, ...) along the second edges, put in the order of the first edges."""
-        if self.reversed.any():
-            values = values.copy()
-            values[self.reversed] = values[self.reversed, ::-1]
-        return values
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Movers:

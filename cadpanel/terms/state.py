@@ -29,11 +29,6 @@ class State:
     layout: Layout
     walks: tuple[Walk, ...]
 
-    @property
-    def differentiated(self) -> bool:
-        """Whether derivatives can be asked for."""
-        return self.walks[0].carriers.twist is not None
-
     @cached_property
     def corners(self) -> Points:
         """Corners (panels, corners, 3), and their derivatives (panels, corners, 3, size) by the unknowns."""

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from cadpanel.fitting.atomic.cylinder import fit_cylinder
     from cadpanel.fitting.atomic.plane import fit_plane
     from cadpanel.fitting.atomic.result import ConeFit, CylinderFit, PlaneFit
+    from cadpanel.fitting.blend import Blend
     from cadpanel.fitting.measures import Measures
     from cadpanel.fitting.result import FitResult
     from cadpanel.fitting.settings import FitSettings, Weights
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from cadpanel.reference.settings import ReferenceSettings
 
 __all__ = [
+    "Blend",
     "CadpanelError",
     "Cone",
     "ConeFit",
@@ -102,6 +104,7 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "fitting.atomic.cylinder": ("fit_cylinder",),
         "fitting.atomic.plane": ("fit_plane",),
         "fitting.atomic.result": ("ConeFit", "CylinderFit", "PlaneFit"),
+        "fitting.blend": ("Blend",),
         "fitting.measures": ("Measures",),
         "fitting.result": ("FitResult",),
         "fitting.settings": ("FitSettings", "Weights"),

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 
 from cadpanel.features.catalogue import Tilt
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.blend import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.result import fit as fit_reference
 from cadpanel.fitting.settings import FitSettings, Method, Weights
@@ -45,6 +46,7 @@ class FitKeywords(TypedDict, total=False):
     drift_along: float
     drift_across: float
     min_radius: float
+    blend: str | Blend | Sequence[str | Blend]
     weights: Weights | None
     restarts: int
     seed: int
@@ -111,6 +113,10 @@ def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> 
     return ReferenceSettings(**cast("dict[str, Any]", {**given, **changes}))
 
 
+def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
+    return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
+
+
 def fit(
     reference: Reference,
     settings: FitSettings | None = None,
@@ -130,7 +136,7 @@ def fit(
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: a setting is out of its range.
     """
-    return fit_reference(reference, replace(settings or FitSettings(), **changes), progress)
+    return fit_reference(reference, _asked(settings, changes), progress)
 
 
 def compare(
@@ -160,7 +166,7 @@ def compare(
     from cadpanel.delivery.compare import compare as compare_reference
     from cadpanel.delivery.compare import write_comparison_folder
 
-    comparison = compare_reference(reference, replace(settings or FitSettings(), **changes), progress=progress)
+    comparison = compare_reference(reference, _asked(settings, changes), progress=progress)
     if out is not None:
         write_comparison_folder(comparison, Path(out), overwrite=overwrite)
     return comparison

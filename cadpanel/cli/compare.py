@@ -21,6 +21,7 @@ def compare(
     drift_along: options.DriftAlong = 5.0,
     drift_across: options.DriftAcross = 2.0,
     min_radius: options.MinRadius = 10.0,
+    blend: options.BlendOption = None,
     restarts: options.Restarts = 0,
     seed: options.Seed = 0,
     seam_tolerance: options.SeamTolerance = 1.0,
@@ -50,6 +51,7 @@ def compare(
         drift_along=drift_along,
         drift_across=drift_across,
         min_radius=min_radius,
+        blend=blend,
         restarts=restarts,
         seed=seed,
     )

@@ -36,6 +36,7 @@ def fit(
     drift_along: options.DriftAlong = 5.0,
     drift_across: options.DriftAcross = 2.0,
     min_radius: options.MinRadius = 10.0,
+    blend: options.BlendOption = None,
     thickness: Annotated[float, typer.Option("--thickness", metavar="MM", help="Of the sheet.")] = 3.0,
     skin_side: Annotated[
         SkinSide, typer.Option("--skin-side", help="Is the fitted skin the sheet's outer or inner face?")
@@ -74,6 +75,7 @@ def fit(
         drift_along=drift_along,
         drift_across=drift_across,
         min_radius=min_radius,
+        blend=blend,
         restarts=restarts,
         seed=seed,
     )

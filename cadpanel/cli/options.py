@@ -11,6 +11,7 @@ import typer
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt
+from cadpanel.fitting.blend import blends_of
 from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.settings import By, ReferenceSettings
 
@@ -60,6 +61,14 @@ DriftAcross = Annotated[
     typer.Option("--drift-across", metavar="PERCENT", help="How far corners may move across it, which people see."),
 ]
 MinRadius = Annotated[float, typer.Option("--min-radius", metavar="MM", help="Tightest radius that the shop can roll.")]
+BlendOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--blend",
+        metavar="[PANEL=]FROM-TO[%]",
+        help="Stretch across the panels, mm from side 0, to become the bend; may be repeated, for one panel each.",
+    ),
+]
 Restarts = Annotated[int, typer.Option("--restarts", help="Further starts from shaken panels; the best counts.")]
 Seed = Annotated[int, typer.Option("--seed", help="Of the random numbers that shake them.")]
 SeamTolerance = Annotated[
@@ -117,6 +126,7 @@ def fit_settings(
     drift_along: float,
     drift_across: float,
     min_radius: float,
+    blend: list[str] | None,
     restarts: int,
     seed: int,
 ) -> FitSettings:
@@ -139,6 +149,7 @@ def fit_settings(
         drift_along=_share("--drift-along", drift_along),
         drift_across=_share("--drift-across", drift_across),
         min_radius=min_radius,
+        blend=blends_of(blend),
         restarts=restarts,
         seed=seed,
     )

@@ -70,6 +70,9 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     if len(report.features) > 1:
         counts = ", ".join(f"{count} {name}" for name, count in report.features.items())
         out.print(Text(f"Panels by feature: {counts}."))
+    bends = _bends(report)
+    if bends:
+        out.print(Text(bends))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]
@@ -78,6 +81,22 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     if len(notes) > _MOST_NOTES:
         out.print(Text(f"{counted(len(notes) - _MOST_NOTES, 'more note')} in {REPORT}."))
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def _bends(report: ReportModel) -> str:
+    """What was taken for the bends between two flanges, and nothing where panels have none."""
+    widths, whole = [], []
+    for panel in report.panels:
+        curved = [index for index, patch in enumerate(panel.patches) if patch.kind != "plane"]
+        if not curved or curved[0] == 0 or curved[-1] == len(panel.patches) - 1:
+            return ""
+        for end in panel.taken:
+            widths.append(end[curved[-1] + 1] - end[curved[0]])
+            whole.append(end[-1])
+    return (
+        f"Taken for the bend: {min(widths):.0f} to {max(widths):.0f} mm of widths of {min(whole):.0f} to "
+        f"{max(whole):.0f} mm; where, is in {REPORT}, and --blend overrides it."
+    )
 
 
 def title(report: ReportModel) -> str:

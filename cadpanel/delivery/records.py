@@ -27,6 +27,7 @@ from cadpanel.features.feature import Feature
 from cadpanel.fitting.measures import Measures
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.stretches import taken
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -69,6 +70,7 @@ def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSet
         drift_along=settings.drift_along,
         drift_across=settings.drift_across,
         min_radius=settings.min_radius,
+        blend=tuple(map(str, settings.blend)),
         weights=None
         if weights is None
         else WeightsModel(gap=weights.gap, deviation=weights.deviation, drift=weights.drift),
@@ -96,10 +98,13 @@ def baselines_record(result: FitResult) -> BaselinesModel:
 
 def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[PanelModel, ...]:
     """Every panel as it was fitted and built."""
-    return tuple(_panel(result.measures, index, panel) for index, panel in enumerate(built))
+    return tuple(
+        _panel(result.measures, index, reference, panel)
+        for index, (reference, panel) in enumerate(zip(result.reference.panels, built, strict=True))
+    )
 
 
-def _panel(measures: Measures, index: int, built: PanelSheet) -> PanelModel:
+def _panel(measures: Measures, index: int, reference: PanelReference, built: PanelSheet) -> PanelModel:
     return PanelModel(
         name=built.shape.name,
         feature=built.shape.feature,
@@ -113,6 +118,7 @@ def _panel(measures: Measures, index: int, built: PanelSheet) -> PanelModel:
         volume=built.volume,
         corners=tuple(tuple(vector(corner) for corner in row) for row in built.shape.corners()),
         patches=patch_models(built.shape),
+        taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
         moved=built.moved,
         notes=built.notes,
     )

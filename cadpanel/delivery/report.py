@@ -66,6 +66,7 @@ class SettingsModel(Record):
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
         min_radius: tightest radius that was allowed anywhere, mm.
+        blend: which stretches were to become curved patches, where the user said so.
         weights: the weights, or None where a tolerance was held.
         restarts: further starts.
         seed: of the random numbers.
@@ -85,6 +86,7 @@ class SettingsModel(Record):
     drift_along: NonNegative
     drift_across: NonNegative
     min_radius: NonNegative = 0.0
+    blend: tuple[str, ...] = ()
     weights: WeightsModel | None
     restarts: NonNegativeCount
     seed: int
@@ -125,6 +127,8 @@ class PanelModel(Record):
         corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
             of a chain, one row round a polygon.
         patches: in the order of the walk across the panel, as they are built.
+        taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
+            along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
         notes: what the fabricator should know, one sentence each.
     """
@@ -141,6 +145,7 @@ class PanelModel(Record):
     volume: Positive
     corners: tuple[tuple[Vector, ...], ...]
     patches: tuple[PatchModel, ...]
+    taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
 

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 from cadpanel.features.catalogue import PanelFeature
 from cadpanel.features.layout import Layout
 from cadpanel.features.skin import skin_normals
+from cadpanel.fitting.blend import Blend
 from cadpanel.fitting.limits import LEAST_WIDTH, natural_bounds
 from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start import Start, start
+from cadpanel.fitting.stretches import allowed_patches, check_blends, stretches
 from cadpanel.reference.model import Reference
 from cadpanel.terms.arc import ArcGap
 from cadpanel.terms.deviation import Deviation
@@ -116,7 +118,7 @@ class Problem:
         return Problem(
             layout=layout,
             place=replace(place, origins=place.origins[panels], axes=place.axes[panels]),
-            deviation=Deviation(np.ascontiguousarray(self.deviation.samples[:, panels]), self.deviation.roots[panels]),
+            deviation=self.deviation.take(panels),
             outline=replace(outline, corners=outline.corners[:, :most]),
             lengths=self.lengths[panels],
             seams=(),
@@ -164,20 +166,36 @@ class Problem:
         return result
 
 
-def pose(reference: Reference, features: Sequence[PanelFeature]) -> tuple[Problem, tuple[Array, ...]]:
+def pose(
+    reference: Reference, features: Sequence[PanelFeature], blends: Sequence[Blend] = ()
+) -> tuple[Problem, tuple[Array, ...]]:
     """The problem of a reference, one feature a panel, and first unknowns (panels, size), the likeliest first.
+
+    Args:
+        reference: what is to be approximated.
+        features: one a panel.
+        blends: which stretches are to become the curved patches, where the user says so.
 
     Raises:
         PanelError: a panel is not what its feature is made for.
+        SettingsError: a blend does not suit a panel.
     """
+    check_blends(reference, features, blends)
     length = float(np.mean([panel.length for panel in reference.panels]))
     layout = Layout.of(features, length)
     samples = SampleArrays.of(reference)
-    begin = start(reference, layout, samples, length)
-    return _problem(reference, layout, samples, begin), begin.unknowns
+    begin = start(reference, layout, samples, length, stretches(reference.panels, blends))
+    allowed = allowed_patches(reference.panels, features, blends, samples.points)
+    return _problem(reference, layout, samples, begin, allowed), begin.unknowns
 
 
-def _problem(reference: Reference, layout: Layout, samples: SampleArrays, begin: Start) -> Problem:
+def _problem(
+    reference: Reference,
+    layout: Layout,
+    samples: SampleArrays,
+    begin: Start,
+    allowed: tuple[IntArray, IntArray] | None,
+) -> Problem:
     """Turn a reference into arrays. Samples weigh by their area, such that the cost is half the mean square a panel."""
     # Positions relative to the middle of all: map-grid coordinates would cost digits in the gaps.
     centre = begin.origins.mean(axis=0)
@@ -188,7 +206,7 @@ def _problem(reference: Reference, layout: Layout, samples: SampleArrays, begin:
     return Problem(
         layout=layout,
         place=place,
-        deviation=Deviation(np.ascontiguousarray(local), np.sqrt(share)),
+        deviation=Deviation(np.ascontiguousarray(local), np.sqrt(share), allowed),
         outline=outline_of(reference, layout, begin),
         lengths=np.array([panel.length for panel in reference.panels]) / begin.length,
         seams=seams,

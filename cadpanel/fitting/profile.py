@@ -34,13 +34,15 @@ class Profile:
     angles: Array
 
 
-def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False) -> Profile:
+def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, held: Array | None = None) -> Profile:
     """Cut walks into patches.
 
     Args:
         turned: (n, q) angle by which the normals have turned at q evenly spaced places, radians.
         curved: for each patch whether it turns.
         even: give curved patches that follow each other equal parts of their stretch, instead of the best.
+        held: (n, 2) steps, with fractions, at which the only stretch of curved patches is to begin and end; nan where
+            it is to be found.
     """
     count, places = turned.shape
     last = places - 1
@@ -62,6 +64,8 @@ def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False) ->
         knots[:, patch] = origins[patch][rows, knots[:, patch + 1]]
     if even:
         _even_out(knots, curved)
+    if held is not None and not np.all(np.isnan(held)):
+        _hold(knots, curved, held)
     return Profile(knots, _angles(turned, knots, curved))
 
 
@@ -71,6 +75,17 @@ def _even_out(knots: IntArray, curved: Sequence[bool]) -> None:
         first, last = knots[:, start].copy(), knots[:, stop].copy()
         for knot in range(start + 1, stop):
             knots[:, knot] = np.round(first + (last - first) * (knot - start) / (stop - start))
+
+
+def _hold(knots: IntArray, curved: Sequence[bool], held: Array) -> None:
+    """Lay the stretch of curved patches between given steps, its patches evenly, and leave every patch a step."""
+    ((start, stop),) = curved_runs(curved)
+    rows = np.flatnonzero(~np.isnan(held).any(axis=1))
+    last, patches = knots[0, -1], len(curved)
+    begin = np.clip(np.round(held[rows, 0]), start, last - (patches - start))
+    end = np.clip(np.round(held[rows, 1]), begin + stop - start, last - (patches - stop))
+    for knot in range(start, stop + 1):
+        knots[rows, knot] = np.round(begin + (end - begin) * (knot - start) / (stop - start))
 
 
 def curved_runs(curved: Sequence[bool]) -> list[tuple[int, int]]:

@@ -136,7 +136,7 @@ def _fit(
     progress: Progress | None,
 ) -> FitResult:
     """Fit panels that have these features."""
-    posed, starts = pose(reference, features)
+    posed, starts = pose(reference, features, how.blend)
     local = fit_local(posed, reference, starts, how)
 
     def tell(round_: int, excess: float) -> None:

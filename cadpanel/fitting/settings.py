@@ -10,6 +10,7 @@ from typing import Literal, get_args
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, PanelFeature, Tilt, for_corners
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.blend import Blend, blends_of
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""
@@ -58,6 +59,8 @@ class FitSettings:
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
+        blend: which stretch across the panels becomes their curved patches, where that is not to be told by the
+            surface's normals: "410-540" (mm from side 0), "40-55%", "NW-03=410-540" for one panel, or several of these.
         min_radius: mm, the tightest that the shop can roll; no cone or cylinder gets tighter anywhere.
         weights: the paper's objective instead of a tolerance, or None.
         restarts: further starts from perturbed local fits; the best result counts.
@@ -72,6 +75,7 @@ class FitSettings:
     drift_along: float = 0.05
     drift_across: float = 0.02
     min_radius: float = 10.0
+    blend: tuple[Blend, ...] = ()
     weights: Weights | None = None
     restarts: int = 0
     seed: int = 0
@@ -103,6 +107,9 @@ class FitSettings:
         require_whole("number of restarts", self.restarts, least=0, most=1000)
         require_whole("seed", self.seed, least=0)
         _require_weights(self.weights)
+        object.__setattr__(self, "blend", blends_of(self.blend))
+        if self.blend and self.automatic:
+            raise SettingsError(f"with the feature '{AUTO}' it is not known which panels have a blend: name a feature")
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
 

@@ -59,7 +59,9 @@ class Start:
     length: float
 
 
-def start(reference: Reference, layout: Layout, samples: SampleArrays, length: float) -> Start:
+def start(
+    reference: Reference, layout: Layout, samples: SampleArrays, length: float, stretches: Array | None = None
+) -> Start:
     """First values for all panels.
 
     Args:
@@ -67,11 +69,14 @@ def start(reference: Reference, layout: Layout, samples: SampleArrays, length: f
         layout: the panels' features, in units of `length`.
         samples: those of the reference.
         length: mm.
+        stretches: (panels, 2, 2) where on both ends the curved patches are to begin and end, mm from side 0; nan, or
+            None, where the normals are to tell.
 
     Raises:
         PanelError: a panel has no fold, or not the four corners, that its feature asks for.
     """
     origins, axes = np.zeros((layout.panels, 3)), np.zeros((layout.panels, 3, 3))
+    held = np.full((layout.panels, 2, 2), np.nan) if stretches is None else stretches
     starts = [np.zeros((layout.panels, layout.size))]
     if any(_ambiguous(group.feature) for group in layout.groups):
         starts.append(starts[0].copy())
@@ -79,7 +84,9 @@ def start(reference: Reference, layout: Layout, samples: SampleArrays, length: f
         panels = [reference.panels[i] for i in group.panels]
         if isinstance(group.feature, Feature):
             _check(panels, reference.source, group.feature)
-            found = _start_chains(panels, group.feature, samples.take(group.panels), length, ways=len(starts))
+            found = _start_chains(
+                panels, group.feature, samples.take(group.panels), length, held[group.panels], ways=len(starts)
+            )
         else:
             found = start_polygons(panels, samples.take(group.panels), length)
         origins[group.panels], axes[group.panels] = found.origins, found.axes
@@ -122,14 +129,22 @@ class _Ends:
 
 
 def _start_chains(
-    panels: Sequence[PanelReference], feature: Feature, samples: SampleArrays, length: float, *, ways: int
+    panels: Sequence[PanelReference],
+    feature: Feature,
+    samples: SampleArrays,
+    length: float,
+    stretches: Array,
+    *,
+    ways: int,
 ) -> Frames:
     """Frames and all numbers of the chains; `ways` is 2 where curved patches may be cut in another way, too."""
     axis = _axes(panels, samples)
     whole = np.array([panel.corners for panel in panels])
     found: Frames | None = None
     for way in range(ways if _ambiguous(feature) else 1):
-        origins, axes, values = _roll(_cut_ends(panels, feature, axis, even=way > 0), panels, feature, length)
+        origins, axes, values = _roll(
+            _cut_ends(panels, feature, axis, stretches, even=way > 0), panels, feature, length
+        )
         if found is None:
             found = Frames(origins, axes, [])
         else:
@@ -190,18 +205,21 @@ def _axes(panels: Sequence[PanelReference], samples: SampleArrays) -> Array:
     return np.where(astray[:, None], chord, least)
 
 
-def _cut_ends(panels: Sequence[PanelReference], feature: Feature, axis: Array, *, even: bool) -> _Ends:
+def _cut_ends(
+    panels: Sequence[PanelReference], feature: Feature, axis: Array, stretches: Array, *, even: bool
+) -> _Ends:
     lines, normals = _evenly(panels)
     count, _, places, _ = lines.shape
     n = _unit(_off(normals.sum(axis=(1, 2)), axis))
     b = cross(axis, n)
     turned = np.arctan2(np.einsum("peqx,px->peq", normals, b), np.einsum("peqx,px->peq", normals, n))
     turned = np.unwrap(turned, axis=2)
-    profile = cut_profile(turned.reshape(2 * count, places), feature.curved, even=even)
+    lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
+    held = stretches / lengths[..., None] * (places - 1)
+    profile = cut_profile(turned.reshape(2 * count, places), feature.curved, even=even, held=held.reshape(-1, 2))
     knots = profile.knots.reshape(count, 2, -1)
     sweeps = np.diff(profile.angles.reshape(count, 2, -1).mean(axis=1), axis=1)
     sweeps = np.where(np.abs(sweeps) < _LEAST_SWEEP, np.where(sweeps < 0.0, -1.0, 1.0) * _LEAST_SWEEP, sweeps)
-    lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
     middle = (0.5 * (knots[:, :, feature.anchor] + knots[:, :, feature.anchor + 1])).astype(np.float64)
     return _Ends(
         points=_at(lines, knots.astype(np.float64)),

@@ -30,12 +30,18 @@ _CHUNK = 64
 
 @dataclass(frozen=True, slots=True)
 class _Chunk:
-    """Some panels of one feature: their walk, their samples (3, n, m) and roots of weights (n, m), and who they are."""
+    """Some panels of one feature: their walk, samples (3, n, m), roots of weights (n, m), who they are, and limits."""
 
     walked: Walk
     samples: Array
     roots: Array
     panels: IntArray
+    allowed: tuple[IntArray, IntArray] | None
+
+    def assign(self) -> IntArray:
+        """The patch (n, m) of each sample, as near as it is allowed to the one under its foot point."""
+        patch = assign(self.walked, self.samples)
+        return patch if self.allowed is None else np.clip(patch, *self.allowed)
 
 
 class Deviation:
@@ -44,17 +50,28 @@ class Deviation:
     Attributes:
         samples: (3, panels, m) coordinates in the panels' own frames, in units of the solver's length.
         roots: (panels, m) square roots of the samples' weights; 0 where a panel has fewer samples than others.
+        allowed: first and last patch (panels, m) that each sample may be held to, None where the foot point rules
+            alone.
     """
 
-    def __init__(self, samples: Array, roots: Array) -> None:
+    def __init__(self, samples: Array, roots: Array, allowed: tuple[IntArray, IntArray] | None = None) -> None:
         """Keep the arrays."""
-        self.samples, self.roots = samples, roots
+        self.samples, self.roots, self.allowed = samples, roots, allowed
 
-    def distances(self, state: State) -> tuple[Array, IntArray]:
-        """Signed distances (panels, m) in units of the solver's length, and the patch that each sample belongs to."""
+    def take(self, panels: IntArray) -> Deviation:
+        """The same term for some of its panels."""
+        allowed = None if self.allowed is None else (self.allowed[0][panels], self.allowed[1][panels])
+        return Deviation(np.ascontiguousarray(self.samples[:, panels]), self.roots[panels], allowed)
+
+    def distances(self, state: State, *, held: bool = False) -> tuple[Array, IntArray]:
+        """Signed distances (panels, m) in units of the solver's length, and the patch that each sample belongs to.
+
+        To the panel as it is, under the samples' foot points; `held` to the patches that they may be held to, as the
+        term's cost counts them.
+        """
         distance, patches = np.zeros(self.roots.shape), np.zeros(self.roots.shape, dtype=np.intp)
         for chunk in self._chunks(state):
-            patch = assign(chunk.walked, chunk.samples)
+            patch = chunk.assign() if held else assign(chunk.walked, chunk.samples)
             own = np.zeros(patch.shape)
             for i in range(len(chunk.walked.feature.patches)):
                 own = np.where(patch == i, patch_distance(chunk.walked, chunk.samples, i), own)
@@ -65,7 +82,7 @@ class Deviation:
         """See `Term.cost`."""
         cost = np.zeros(len(self.roots))
         for chunk in self._chunks(state):
-            patch = assign(chunk.walked, chunk.samples)
+            patch = chunk.assign()
             total = np.zeros(len(chunk.panels))
             for i in range(len(chunk.walked.feature.patches)):
                 weighted = np.where(patch == i, chunk.roots, 0.0) * patch_distance(chunk.walked, chunk.samples, i)
@@ -78,7 +95,7 @@ class Deviation:
         cost = np.zeros(len(self.roots))
         for chunk in self._chunks(state):
             walked, feature = chunk.walked, chunk.walked.feature
-            patch = assign(walked, chunk.samples)
+            patch = chunk.assign()
             count = len(feature.free)
             gradient, square = np.zeros((len(chunk.panels), count)), np.zeros((len(chunk.panels), count, count))
             total = np.zeros(len(chunk.panels))
@@ -101,7 +118,7 @@ class Deviation:
         rows = []
         for chunk in self._chunks(state):
             walked, feature = chunk.walked, chunk.walked.feature
-            patch = assign(walked, chunk.samples)
+            patch = chunk.assign()
             residual, jacobian = np.zeros(patch.shape), np.zeros((*patch.shape, state.layout.size))
             for i in range(len(feature.patches)):
                 distance, inner = patch_distance_inner(walked, chunk.samples, i)
@@ -117,7 +134,9 @@ class Deviation:
             samples, roots = self._own(state.layout, group)
             for start in range(0, len(group.panels), _CHUNK):
                 part = slice(start, start + _CHUNK)
-                yield _Chunk(_part(walked, part), samples[:, part], roots[part], group.panels[part])
+                panels = group.panels[part]
+                allowed = None if self.allowed is None else (self.allowed[0][panels], self.allowed[1][panels])
+                yield _Chunk(_part(walked, part), samples[:, part], roots[part], panels, allowed)
 
     def _own(self, layout: Layout, group: Group) -> tuple[Array, Array]:
         if len(layout.groups) == 1:

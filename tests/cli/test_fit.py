@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,30 @@ def test_the_report_says_what_was_asked_and_what_came_of_it(delivered: Path) -> 
     assert all(getattr(report.timing, step) > 0.0 for step in ("read", "fit", "build", "write", "verify"))
 
 
+def test_the_report_says_what_was_taken_for_what_and_the_user_may_override_it(
+    run: Run, delivered: Path, lip_step: Path, tmp_path: Path
+) -> None:
+    (*_, panel) = read_report(delivered / "report.json").panels
+    for end, corners in zip(panel.taken, panel.corners, strict=True):
+        assert end[0] == 0.0
+        assert np.diff(end).min() > 0.0
+        # The panel follows its reference, so that both are about as wide.
+        wide = sum(float(np.linalg.norm(np.subtract(*pair))) for pair in pairwise(corners))
+        assert end[-1] == pytest.approx(wide, rel=0.05)
+    own = [end[2] - end[1] for end in panel.taken]
+    # The other panels are left alone.
+    words = ("fit", lip_step, "--out", tmp_path / "out", "--method", "local", "--blend", f"{panel.name}=20-80%")
+    answer = run(*words)
+    assert "Taken for the bend" in answer.out
+    told = read_report(tmp_path / "out" / "report.json")
+    assert told.settings.blend == (f"{panel.name}=20-80%",)
+    assert all(end[2] - end[1] > wide for end, wide in zip(told.panels[-1].taken, own, strict=True))
+    run("fit", lip_step, "--out", tmp_path / "free", "--method", "local", "--quiet")
+    free = read_report(tmp_path / "free" / "report.json")
+    assert [one.taken for one in told.panels[:-1]] == [one.taken for one in free.panels[:-1]]
+    assert told.panels[-1].rms_deviation > free.panels[-1].rms_deviation
+
+
 def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, lip_step: Path, tmp_path: Path) -> None:
     answer = run("fit", lip_step, "--out", tmp_path / "out")
     assert answer.code == 0
@@ -68,9 +93,10 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
     options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --skin-side inner"
     options += (
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
+        " --blend 500-900 --blend N-02=45-62.5%"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
-    assert answer.code == 0, answer.err
+    assert answer.code in (0, 1), answer.err
     settings = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))["settings"]
     assert settings["cadpanel_version"]
     del settings["cadpanel_version"]
@@ -84,6 +110,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "drift_along": 0.04,
         "drift_across": 0.015,
         "min_radius": 25.0,
+        "blend": ["500-900", "N-02=45-62.5%"],
         "weights": None,
         "restarts": 1,
         "seed": 7,

@@ -55,7 +55,7 @@ class Together:
         found = [np.zeros(0)]
         for part in self.parts:
             if isinstance(part, Deviation):
-                weighted = part.roots * part.distances(state)[0]
+                weighted = part.roots * part.distances(state, held=True)[0]
                 found += [weighted[group.panels].reshape(-1) for group in state.layout.groups]
             if isinstance(part, HELD):
                 found.append((part.hold.roots()[..., None] * part.vectors(state)).reshape(-1))

@@ -12,7 +12,18 @@ from cadpanel.features.skin import assign, skin_normals
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.deviation import Deviation
 from tests.chains import CHAINS, POLYGONS
-from tests.terms.models import ROUNDING, Case, case_of, empty, largest, mixed_case
+from tests.terms.models import (
+    DIFFERENCES,
+    ROUNDING,
+    Case,
+    assert_model_is_that_of_the_rows,
+    case_of,
+    empty,
+    jacobian_fault,
+    largest,
+    made_term,
+    mixed_case,
+)
 
 few = settings(max_examples=2)
 seeds = st.integers(0, 10_000)
@@ -105,3 +116,35 @@ def test_many_panels_are_worked_on_in_parts_that_do_not_show(name):
 def test_panels_of_several_features_count_as_each_of_them_does_alone():
     case = mixed_case(9)
     assert_panels_count_as_alone(case, range(case.problem.panels))
+
+
+def held_case(name, seed):
+    """Samples held to patches at random, whatever patch they lie over."""
+    case = mixed_case(seed) if name == "mixed" else case_of(name, seed)
+    free, random = case.problem.deviation, np.random.default_rng(seed)
+    patches = np.array([len(feature.curved) for feature in case.problem.layout.feature_of])[:, None]
+    first = random.integers(0, patches, free.roots.shape)
+    held = Deviation(free.samples, free.roots, (first, random.integers(first, patches)))
+    return replace(case, problem=replace(case.problem, deviation=held))
+
+
+HELD_FEATURES = ["plane-cone-plane", "tri-cone", "mixed"]
+
+
+@pytest.mark.parametrize("name", HELD_FEATURES)
+def test_held_samples_obey_the_laws_of_terms(name):
+    case = held_case(name, 5)
+    made = made_term("deviation", case.problem)
+    assert jacobian_fault(made, case) <= DIFFERENCES
+    assert_model_is_that_of_the_rows(made, case)
+    assert_panels_count_as_alone(case, range(min(4, case.problem.panels)))
+
+
+@pytest.mark.parametrize("name", HELD_FEATURES)
+def test_held_samples_belong_to_the_nearest_patch_that_they_may(name):
+    case = held_case(name, 6)
+    state, deviation = case.problem.state(case.unknowns), case.problem.deviation
+    patch, held = (deviation.distances(state, held=how)[1] for how in (False, True))
+    first, last = deviation.allowed
+    assert np.array_equal(held, np.clip(patch, first, last))
+    assert (patch != held).any()

@@ -70,7 +70,7 @@ def skin_faces(
     notes: list[str] = []
     measured = []
     for face in faces:
-        skin = _measure(face, source)
+        skin = measure(face, source)
         if skin is None:
             notes.append(f"Face {face.number} of '{source}' has no area and is left out.")
             continue
@@ -86,7 +86,12 @@ def skin_faces(
     return kept, (*notes, *doubled)
 
 
-def _measure(face: ModelFace, source: str) -> SkinFace | None:
+def measure(face: ModelFace, source: str) -> SkinFace | None:
+    """Measure one face; None where it has no area.
+
+    Raises:
+        ReferenceFileError: the kernel cannot evaluate it.
+    """
     try:
         (samples,) = sample_faces(face.face)
         patch = patch_of(face.face)

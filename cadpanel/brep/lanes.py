@@ -88,6 +88,24 @@ class Lanes:
                 group.append(rectangle(lane.patch, *ranges))
         return groups
 
+    def order(self) -> list[tuple[int, bool]] | None:
+        """The lanes in their order across the strip, each with whether it is walked along its other parameter.
+
+        None where they are no chain from one long edge to the other.
+        """
+        if len(self.outer) != 2:
+            return None
+        joined = {first: second for pair in self.joints for first, second in (pair, pair[::-1])}
+        order = []
+        index, side = self.outer[0]
+        for _ in self.lanes:
+            order.append((index, side == 0.0))
+            exit_side = (index, 1.0 - side)
+            if exit_side not in joined:
+                break
+            index, side = joined[exit_side]
+        return order if len(order) == len(self.lanes) and exit_side == self.outer[1] else None
+
     def at_lengths(self, parts: Array) -> Array:
         """Where, as parts of the way, (k,) parts of the long edges' mean length are reached."""
         return equal_parts(self.reach(), parts)

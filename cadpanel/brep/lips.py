@@ -2,41 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.brep.lanes import Lane, Lanes
-from cadpanel.brep.patch import patch_of, rectangle
-from cadpanel.reference.polyline import norm
+from cadpanel.brep.sections import CrossSection, Sections
 
 Array = NDArray[np.float64]
 
-# Places along the strip at which it is looked at across, and points across each lane.
-SECTIONS = (0.1, 0.3, 0.5, 0.7, 0.9)
-POINTS = 257
+# Parts of the strip's length at which it is looked at across to find its lips.
+SECTIONS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 # A lip turns faster than the whole section does in the mean by this factor, and by so much in all, degrees.
 FAST = 2.0
 LEAST_TURN = 10.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
-    """A strip across, in the mean of several sections.
-
-    Attributes:
-        lane: (n,) which lane each point lies on, lanes following each other across the strip.
-        across: (n,) where on that lane, as a part of its range.
-        length: (n,) length from the first long edge, mm.
-        turn: (n,) by how much the normals have turned up to there, radians.
-    """
-
-    lane: NDArray[np.intp]
-    across: Array
-    length: Array
-    turn: Array
+# A lip is followed from section to section within its width, or this part of the section's where it is a mere crease,
+# on so fine a ruler, and sought again about what was found.
+LEAST_REACH = 0.02
+FINE = 2049
+CORRECTIONS = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,38 +41,6 @@ class Lip:
     def radius(self) -> float:
         """Mean radius, mm."""
         return self.width / float(np.radians(self.turn))
-
-
-def section_of(lanes: Lanes) -> Section | None:
-    """A strip of lanes across, or None where its lanes are no chain from one long edge to the other."""
-    order = _across(lanes)
-    if order is None:
-        return None
-    numbers, acrosses, lengths, turns = [], [], [], []
-    length, turn = 0.0, 0.0
-    last: Array | None = None
-    for index, forward in order:
-        across = np.linspace(0.0, 1.0, POINTS) if forward else np.linspace(1.0, 0.0, POINTS)
-        lane = lanes.lanes[index]
-        parameters = lane.patch.at(lane.axis, lane.own(np.array(SECTIONS))[:, None], across[None, :])
-        points, normals = lane.patch.points(parameters), lane.patch.normals(parameters)
-        step = norm(np.diff(points, axis=1)).mean(axis=0)
-        angle = (2.0 * np.arcsin(np.clip(0.5 * norm(np.diff(normals, axis=1)), 0.0, 1.0))).mean(axis=0)
-        if last is not None:
-            # Neighbours may have their normals on different sides.
-            cosines = np.abs(np.sum(last * normals[:, 0], axis=-1))
-            turn += float(np.arccos(np.clip(cosines, -1.0, 1.0)).mean())
-        lengths.append(length + np.concatenate([[0.0], np.cumsum(step)]))
-        turns.append(turn + np.concatenate([[0.0], np.cumsum(angle)]))
-        length, turn, last = float(lengths[-1][-1]), float(turns[-1][-1]), normals[:, -1]
-        numbers.append(np.full(POINTS, index))
-        acrosses.append(across)
-    return Section(
-        lane=np.concatenate(numbers),
-        across=np.concatenate(acrosses),
-        length=np.concatenate(lengths),
-        turn=np.concatenate(turns),
-    )
 
 
 def lips_of(length: Array, turn: Array) -> tuple[Lip, ...]:
@@ -113,42 +65,37 @@ def lips_of(length: Array, turn: Array) -> tuple[Lip, ...]:
     return tuple(lips)
 
 
-def band(lanes: Lanes, section: Section, low: float, high: float) -> Lanes:
-    """The part of a strip between two lengths across it, mm, as lanes again."""
-    kept: list[Lane] = []
-    outer: list[tuple[int, float]] = []
-    order = list(dict.fromkeys(section.lane.tolist()))
-    for index in order:
-        own = section.lane == index
-        length, across = section.length[own], section.across[own]
-        if length[-1] <= low or length[0] >= high:
-            continue
-        ends = np.interp([max(low, length[0]), min(high, length[-1])], length, across)
-        lane = lanes.lanes[index]
-        first, last = sorted(lane.patch.at(lane.axis, np.zeros(2), ends)[:, 1 - lane.axis].tolist())
-        along = tuple(lane.patch.bounds[lane.axis].tolist())
-        ranges = (along, (first, last)) if lane.axis == 0 else ((first, last), along)
-        rising = across[-1] > across[0]
-        # The strip's first long edge lies where its first lane begins, the second one where its last lane ends.
-        if not kept:
-            outer.append((0, 0.0 if rising else 1.0))
-        kept.append(Lane(patch=patch_of(rectangle(lane.patch, *ranges)), axis=lane.axis, forward=lane.forward))
-        end = (len(kept) - 1, 1.0 if rising else 0.0)
-    outer.append(end)
-    return Lanes(lanes=tuple(kept), outer=tuple(outer))
+def follow_lip(sections: Sections) -> Array | None:
+    """(n,) the middle of the lip that turns most, section by section, mm from the first long edge.
 
-
-def _across(lanes: Lanes) -> Sequence[tuple[int, bool]] | None:
-    """The lanes in their order across the strip, each with whether it is walked along its other parameter."""
-    if len(lanes.outer) != 2:
+    The lip is found in the middle section and followed from there both ways: in each section the middle is where half
+    of what turns about the lip's last place has turned. None where there is no lip.
+    """
+    start = len(sections.sections) // 2
+    section = sections.sections[start]
+    lips = lips_of(section.length, section.turn) or lips_of(*sections.mean)
+    if not lips:
         return None
-    joined = {first: second for pair in lanes.joints for first, second in (pair, pair[::-1])}
-    order = []
-    index, side = lanes.outer[0]
-    for _ in lanes.lanes:
-        order.append((index, side == 0.0))
-        exit_side = (index, 1.0 - side)
-        if exit_side not in joined:
-            break
-        index, side = joined[exit_side]
-    return order if len(order) == len(lanes.lanes) and exit_side == lanes.outer[1] else None
+    chief = max(lips, key=lambda lip: lip.turn)
+    reach = max(chief.width, LEAST_REACH * float(section.length[-1])) / section.length[-1]
+    shares = np.full(len(sections.sections), chief.middle / section.length[-1])
+    for indices in (range(start, len(shares)), range(start, -1, -1)):
+        share = float(shares[start])
+        for index in indices:
+            for _ in range(CORRECTIONS):
+                share = _half_turned(sections.sections[index], share - reach, share + reach)
+            shares[index] = share
+    widths = np.array([section.length[-1] for section in sections.sections])
+    middles: Array = shares * widths
+    return middles
+
+
+def _half_turned(section: CrossSection, low: float, high: float) -> float:
+    """Where between two parts of a section's width half of what turns there has turned, as a part again."""
+    width = float(section.length[-1])
+    # The section on a fine ruler: where two faces meet in a crease, its turn jumps.
+    places = np.linspace(max(low, 0.0), min(high, 1.0), FINE) * width
+    turn = np.interp(places, section.length, section.turn)
+    if turn[-1] <= turn[0]:
+        return 0.5 * (low + high)
+    return float(np.interp(0.5 * (turn[0] + turn[-1]), turn, places)) / width

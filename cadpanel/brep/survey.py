@@ -23,11 +23,11 @@ from cadpanel.brep.clean import SkinFace, skin_faces
 from cadpanel.brep.connect import Surface, surfaces_of
 from cadpanel.brep.curvature import Curvature, curvature_of
 from cadpanel.brep.curves import sampled
-from cadpanel.brep.lanes import find_lanes
-from cadpanel.brep.lips import Lip, lips_of, section_of
+from cadpanel.brep.lips import SECTIONS, Lip, lips_of
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Label, Model
 from cadpanel.brep.patch import Patch, lengths_along
+from cadpanel.brep.sections import sections_of
 from cadpanel.brep.select import select_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import norm
@@ -86,7 +86,7 @@ class SurfaceSurvey:
         name: under which its panels would go.
         faces: their numbers.
         area: mm^2.
-        lips: where normals turn fast across it; None where that could not be measured, as its faces share no parameter.
+        lips: where normals turn fast across it; None where that could not be measured, as it is no strip.
         strip: (length, width) along and across the lips, mm; None with them.
     """
 
@@ -149,7 +149,7 @@ def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Surve
         format=model.format,
         unit=model.unit,
         faces=tuple(map(_face, skin)),
-        surfaces=tuple(map(_surface, surfaces)),
+        surfaces=tuple(_surface(surface, model.source) for surface in surfaces),
         curves=tuple(
             CurveSurvey(
                 number=curve.number,
@@ -194,13 +194,16 @@ def _size(patch: Patch) -> tuple[float, float]:
     return along_u, along_v
 
 
-def _surface(surface: Surface) -> SurfaceSurvey:
-    lanes = find_lanes(surface)
-    section = None if lanes is None or not lanes.outer else section_of(lanes)
+def _surface(surface: Surface, source: str) -> SurfaceSurvey:
     lips, strip = None, None
-    if lanes is not None and section is not None:
-        lips = lips_of(section.length, section.turn)
-        strip = (float(lanes.reach()[-1]), float(section.length[-1]))
+    try:
+        sections = sections_of(surface, SECTIONS, source)
+    except ReferenceFileError:
+        sections = None  # it is no strip: nothing was measured, and nothing is said
+    if sections is not None:
+        length, turn = sections.mean
+        lips = lips_of(length, turn)
+        strip = (sections.strip_length, float(length[-1]))
     return SurfaceSurvey(
         name=surface.name,
         faces=tuple(face.number for face in surface.faces),

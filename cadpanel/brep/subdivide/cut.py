@@ -63,7 +63,9 @@ def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceS
 
 def _lengths(skin: _Skin) -> Cut:
     count, lip = skin.settings.divide or 1, skin.settings.lip
-    cut = [cut_lengths(surface, count, lip, skin.model.source) for surface in skin.surfaces]
+    cut = [
+        cut_lengths(surface, count, lip, skin.model.source, skin.settings.seam_tolerance) for surface in skin.surfaces
+    ]
     return Cut(panels=tuple(panel for panels in cut for panel in panels))
 
 

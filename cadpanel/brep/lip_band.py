@@ -1,0 +1,215 @@
+"""A band of even width about a strip's lip, cut out of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.TopoDS import TopoDS_Face
+from scipy.interpolate import make_interp_spline
+from scipy.spatial import cKDTree
+
+from cadpanel.brep.clean import SkinFace, measure
+from cadpanel.brep.connect import Surface, surfaces_of
+from cadpanel.brep.lips import follow_lip
+from cadpanel.brep.patch import rectangle
+from cadpanel.brep.project import land
+from cadpanel.brep.sections import CrossSection, Sections, sections_of
+from cadpanel.brep.split import Pieces, split_faces
+from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.polyline import cross, norm, unit
+
+Array = NDArray[np.float64]
+
+# Parts of the strip's length at which the lip is looked for, close to both ends, and by how much the band's borders are
+# drawn on beyond them.
+PLACES = np.concatenate([[0.004, 0.02], np.linspace(0.05, 0.95, 19), [0.98, 0.996]])
+BEYOND = 0.008
+# Points along each border of the band.
+BORDER_POINTS = 513
+# A band along parameter lines may be off its width by this part of it.
+EVEN = 0.01
+# The band's borders come from points on the surface and leave it no farther than this part of the strip's length.
+NEAR_PART = 1e-3
+NEAR = 1.0
+# A piece lies in the band when this part of its area does, as points of the strip tell that lie around it.
+MOST = 0.9
+CLOUD_ACROSS, CLOUD_ALONG = 401, 201
+
+
+def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> Surface:
+    """The part of a strip within half a width of its lip's middle, both ways.
+
+    Args:
+        surface: a strip.
+        width: of the band, along the surface, mm.
+        source: the reference's name.
+        tolerance: how far faces that meet may lie apart, mm.
+
+    Raises:
+        ReferenceFileError: the surface is no strip or has no lip, the band reaches beyond the surface, or the kernel
+            cannot cut it out.
+    """
+    sections = sections_of(surface, PLACES, source)
+    middles = follow_lip(sections)
+    if middles is None:
+        raise ReferenceFileError(
+            f"The surface of {surface.numbers} of '{source}' has no lip, a stretch across it that turns fast: "
+            "divide all of it."
+        )
+    square = _square_to_the_lip(sections, middles)
+    borders = np.array(
+        [
+            [_border(section, own, side * width) for section, own in zip(sections.sections, square, strict=True)]
+            for side in (-0.5, 0.5)
+        ]
+    )
+    inside = _check_room(surface, width, middles, borders, sections, source)
+    faces = _along_parameters(sections, borders, surface.faces)
+    if faces is None:
+        what = f"the surface of {surface.numbers} of '{source}' along its lip"
+        pieces = _cut_along_curves(surface, sections, borders[inside], what, tolerance)
+        faces = _within(pieces, surface, _cloud(sections, square), 0.5 * width, source)
+    return _joined(faces, surface, source, tolerance)
+
+
+def _square_to_the_lip(sections: Sections, middles: Array) -> list[Array]:
+    """For each section the (q,) distances of its points from the lip's middle, square to the lip, mm.
+
+    On a swept wing the sections themselves are longer than that.
+    """
+    line = np.array([section.at(middles[[i]])[0] for i, section in enumerate(sections.sections)])
+    along = unit(np.gradient(line, sections.parts, axis=0))
+    found = []
+    for section, middle, way in zip(sections.sections, middles, along, strict=True):
+        steps = norm(cross(np.broadcast_to(way, (len(section.points) - 1, 3)), np.diff(section.points, axis=0)))
+        distance = np.concatenate([[0.0], np.cumsum(steps)])
+        found.append(distance - np.interp(middle, section.length, distance))
+    return found
+
+
+def _border(section: CrossSection, square: Array, wanted: float) -> float:
+    """The length on a section at a distance from the lip; beyond a long edge it goes on along the section."""
+    beyond = min(wanted - float(square[0]), 0.0) + max(wanted - float(square[-1]), 0.0)
+    return float(np.interp(wanted, square, section.length)) + beyond
+
+
+def _check_room(
+    surface: Surface, width: float, middles: Array, borders: Array, sections: Sections, source: str
+) -> list[bool]:
+    """Whether each border of the band lies on the surface; one that lies beyond it everywhere need not be cut.
+
+    Raises:
+        ReferenceFileError: both lie beyond it, or one of them runs over a long edge.
+    """
+    widths = np.array([section.length[-1] for section in sections.sections])
+    inside = [bool(np.all(borders[0] > 0.0)), bool(np.all(borders[1] < widths))]
+    outside = [bool(np.all(borders[0] <= 0.0)), bool(np.all(borders[1] >= widths))]
+    if all(outside):
+        raise ReferenceFileError(
+            f"The surface of {surface.numbers} of '{source}' is {widths.min():.6g} mm wide, no more than the band of "
+            f"{width:g} mm about its lip: divide all of it."
+        )
+    if not all(one or other for one, other in zip(inside, outside, strict=True)):
+        # Of the sections' halves as long as the band's, the shortest tells how wide a band has room everywhere.
+        room = np.minimum(middles / (middles - borders[0]), (widths - middles) / (borders[1] - middles))
+        raise ReferenceFileError(
+            f"The band of {width:g} mm about the lip of the surface of {surface.numbers} of '{source}' runs over its "
+            f"long edge: ask for less than {width * float(room.min()):.6g} mm, or divide all of it."
+        )
+    return inside
+
+
+def _along_parameters(
+    sections: Sections, borders: Array, faces: Sequence[SkinFace]
+) -> list[tuple[SkinFace, TopoDS_Face]] | None:
+    """The band between parameter lines of the lanes, exactly; None where these do not keep it even."""
+    if sections.lanes is None or sections.lane is None or sections.across is None:
+        return None
+    # Places across all lanes as one number: lanes in their order across, and the points of each.
+    count = np.arange(len(sections.lane), dtype=np.float64)
+    wanted = np.array([np.interp(borders[:, i], one.length, count) for i, one in enumerate(sections.sections)])
+    low, high = wanted.mean(axis=0)
+    for index, section in enumerate(sections.sections):
+        off = np.interp([low, high], count, section.length) - np.clip(borders[:, index], 0.0, section.length[-1])
+        if np.abs(off).max() > EVEN * float(borders[1, index] - borders[0, index]):
+            return None
+    kept = []
+    for number in dict.fromkeys(sections.lane.tolist()):
+        own = np.flatnonzero(sections.lane == number).astype(np.float64)
+        if own[-1] <= low or own[0] >= high:
+            continue
+        lane = sections.lanes.lanes[number]
+        ends = np.interp([max(low, own[0]), min(high, own[-1])], own, sections.across[own.astype(np.intp)])
+        first, last = sorted(lane.patch.at(lane.axis, np.zeros(2), ends)[:, 1 - lane.axis].tolist())
+        along = tuple(lane.patch.bounds[lane.axis].tolist())
+        ranges = (along, (first, last)) if lane.axis == 0 else ((first, last), along)
+        kept.append((faces[number], rectangle(lane.patch, *ranges)))
+    return kept
+
+
+def _cut_along_curves(surface: Surface, sections: Sections, borders: Array, what: str, tolerance: float) -> Pieces:
+    """Cut the surface by curves through points of its sections, (curves, n) lengths on them, by the kernel."""
+    fine = np.linspace(-BEYOND, 1.0 + BEYOND, BORDER_POINTS)
+    curves = []
+    for border in borders:
+        points = np.array([section.at(border[[i]])[0] for i, section in enumerate(sections.sections)])
+        # Straight between two sections: a kink of the surface's outline must not make the curve swing.
+        curves.append(np.asarray(make_interp_spline(PLACES, points, k=1)(fine)))
+    landing = land(surface, curves, max(NEAR, NEAR_PART * sections.strip_length), tolerance)
+    tools = [edge for edges in landing.edges for edge in edges]
+    return split_faces([face.patch.face for face in surface.faces], tools, what)
+
+
+def _cloud(sections: Sections, square: Sequence[Array]) -> tuple[Array, Array]:
+    """(m, 3) points all over the strip, and their (m,) distances from the lip's middle, square to it.
+
+    Between two sections they lie on straight lines of one distance.
+    """
+    distances = np.linspace(min(own[0] for own in square), max(own[-1] for own in square), CLOUD_ACROSS)
+    lines = np.array(
+        [
+            section.at(np.interp(distances, own, section.length))
+            for section, own in zip(sections.sections, square, strict=True)
+        ]
+    )
+    fine = np.linspace(0.0, 1.0, CLOUD_ALONG)
+    points = np.asarray(make_interp_spline(sections.parts, lines, k=1)(fine))
+    return points.reshape(-1, 3), np.tile(distances, CLOUD_ALONG)
+
+
+def _within(
+    pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: float, source: str
+) -> list[tuple[SkinFace, TopoDS_Face]]:
+    """The pieces that lie no farther than half a width from the lip, each with the face that it is a part of."""
+    tree = cKDTree(cloud[0])
+    kept = []
+    for face, parts in zip(surface.faces, pieces.faces, strict=True):
+        for part in parts:
+            piece = measure(replace(face.source, face=part), source)
+            if piece is None:
+                continue
+            near = np.abs(cloud[1][tree.query(piece.samples.points)[1]]) <= half
+            share = float(piece.samples.weights @ near) / piece.area
+            if 1.0 - MOST < share < MOST:
+                raise ReferenceFileError(
+                    f"The CAD kernel does not cut face {face.number} of '{source}' along its lip: ask for another "
+                    "width, or trim the face where it was modelled."
+                )
+            if share >= MOST:
+                kept.append((face, part))
+    return kept
+
+
+def _joined(pieces: Sequence[tuple[SkinFace, TopoDS_Face]], surface: Surface, source: str, tolerance: float) -> Surface:
+    """The pieces as a surface under the old name."""
+    faces = [measure(replace(face.source, face=piece), source) for face, piece in pieces]
+    found, _ = surfaces_of([face for face in faces if face is not None], source, tolerance)
+    if len(found) != 1:
+        raise ReferenceFileError(
+            f"The band about the lip of the surface of {surface.numbers} of '{source}' falls into {len(found)} parts: "
+            "ask for another width, or trim it where it was modelled."
+        )
+    return replace(found[0], name=surface.name)

@@ -1,0 +1,114 @@
+"""Lips found on strips of any faces, and bands of even width cut out about them."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.gp import gp_Pln
+
+import cadpanel as cp
+from cadpanel.brep.model import compound_of
+from cadpanel.brep.split import area_of
+from cadpanel.errors import ReferenceFileError
+from tests.brep.test_subdivide import EQUAL, model_of, panels_of
+from tests.model_files import write_shape
+from tests.reference_shapes import kernel_face
+
+LENGTH, FLANGE, RADIUS, TURN = 6000.0, 800.0, 150.0, math.radians(100.0)
+
+
+def fold(sweep=0.0, taper=0.0, wander=0.0):
+    """A flange, an arc and a flange over u from 0 to 3, drawn along v, swept by an angle and tapered to an apex.
+
+    `wander` makes lines of constant u run aslant over the same surface, between the borders of arc and flanges.
+    """
+
+    def surface(u, v):
+        u = u + wander * (v - 0.5) * np.sin(math.pi * u)
+        angle = TURN * (np.clip(u, 1.0, 2.0) - 1.5)
+        out = FLANGE * np.clip(1.0 - u, 0.0, None), FLANGE * np.clip(u - 2.0, 0.0, None)
+        y = RADIUS * np.sin(angle) + (out[1] - out[0]) * math.cos(0.5 * TURN)
+        z = RADIUS * np.cos(angle) - (out[0] + out[1]) * math.sin(0.5 * TURN)
+        size = 1.0 - taper * v
+        return np.stack([LENGTH * v + 0.0 * u, size * y + math.tan(sweep) * LENGTH * v, size * z], axis=-1)
+
+    return surface
+
+
+def faces_of(surface, *rows):
+    """Faces of a surface: for each row how far it reaches along v, and where it is cut across."""
+    found = []
+    for (low, high), cuts in rows:
+        part = lambda u, v, low=low, high=high: surface(u, low + (high - low) * v)  # noqa: E731
+        found += [kernel_face(part, (one, other), poles=24) for one, other in pairwise(cuts)]
+    return found
+
+
+WHOLE = ((0.0, 1.0), (0.0, 1.0, 2.0, 3.0))
+# Two rows whose faces meet aslant in the middle: they share no parameter, and their corners do not meet.
+STAGGERED = (((0.0, 0.45), (0.0, 1.0, 1.6, 2.0, 3.0)), ((0.45, 1.0), (0.0, 1.0, 1.3, 2.0, 3.0)))
+
+
+@pytest.mark.parametrize("sweep", [0.0, 10.0, 30.0])
+@pytest.mark.parametrize("rows", [(WHOLE,), STAGGERED], ids=["lanes", "staggered"])
+@pytest.mark.parametrize("wander", [0.0, 0.15])
+def test_the_band_is_as_wide_as_asked_square_to_the_lip(sweep, rows, wander):
+    angle = math.radians(sweep)
+    model = model_of(*faces_of(fold(sweep=angle, wander=wander), *rows))
+    panels = panels_of(model, divide=3, lip=500.0)
+    assert [panel.name for panel in panels] == ["S1-01", "S1-02", "S1-03"]
+    areas = [sum(map(area_of, panel.faces)) for panel in panels]
+    # Laid flat, the band is a parallelogram.
+    assert sum(areas) == pytest.approx(500.0 * LENGTH / math.cos(angle), rel=EQUAL)
+
+
+def test_the_band_of_a_tapered_strip_is_even():
+    surface = fold(taper=0.4)
+    panels = panels_of(model_of(*faces_of(surface, WHOLE)), divide=4, lip=400.0)
+    lip = float(np.linalg.norm(surface(np.array(1.5), np.array(1.0)) - surface(np.array(1.5), np.array(0.0))))
+    areas = [sum(map(area_of, panel.faces)) for panel in panels]
+    assert sum(areas) == pytest.approx(400.0 * lip, rel=EQUAL)
+    assert max(areas) <= 1.02 * min(areas)
+
+
+def test_the_lip_lies_in_the_middle_of_the_band(tmp_path):
+    faces = faces_of(fold(sweep=0.3), *STAGGERED)
+    reference = cp.read(write_shape(tmp_path / "fold.brep", compound_of(faces)), unit="mm", divide=3, lip=500.0)
+    for panel in reference.panels:
+        for normals in panel.edge_normals[:2]:
+            turned = np.degrees(np.arccos(np.clip(normals[[0, -1]] @ normals[len(normals) // 2], -1.0, 1.0)))
+            # Half of the turn is on either side; swept sections turn unevenly, but alike on both sides.
+            assert turned[0] == pytest.approx(turned[1], abs=2.0)
+            assert turned.sum() > math.degrees(TURN) * 0.9
+
+
+@pytest.mark.parametrize("rows", [(WHOLE,), STAGGERED], ids=["lanes", "staggered"])
+def test_inspect_measures_lips_whatever_the_faces_share(tmp_path, rows):
+    path = write_shape(tmp_path / "fold.brep", compound_of(faces_of(fold(), *rows)))
+    (surface,) = cp.inspect(path, unit="mm").surfaces
+    assert surface.strip == pytest.approx((LENGTH, 2.0 * FLANGE + TURN * RADIUS), rel=1e-4)
+    assert surface.lips is not None
+    (lip,) = surface.lips
+    assert lip.turn == pytest.approx(100.0, abs=1.0)
+    assert lip.radius == pytest.approx(RADIUS, rel=0.02)
+
+
+@pytest.mark.parametrize("rows", [(WHOLE,), STAGGERED], ids=["lanes", "staggered"])
+@pytest.mark.parametrize(("width", "sentence"), [(1850.0, "no more than the band"), (1e5, "no more than the band")])
+def test_a_band_as_wide_as_the_strip_is_refused(rows, width, sentence):
+    with pytest.raises(ReferenceFileError, match=sentence):
+        panels_of(model_of(*faces_of(fold(), *rows)), divide=3, lip=width + 20.0)
+
+
+def test_a_band_that_runs_over_a_long_edge_is_refused_with_the_width_that_has_room():
+    surface = fold(taper=0.5)
+    with pytest.raises(ReferenceFileError, match=r"runs over its long edge: ask for less than (9\d\d)"):
+        panels_of(model_of(*faces_of(surface, WHOLE)), divide=3, lip=1200.0)
+
+
+def test_a_flat_strip_has_no_lip():
+    flat = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 6000.0, 0.0, 900.0).Face()
+    with pytest.raises(ReferenceFileError, match="has no lip"):
+        panels_of(model_of(flat), divide=3, lip=100.0)

@@ -25,7 +25,7 @@ PUBLIC = {
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step"),
     *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch"),
-    *("Feature", "Plane", "Cone", "Cylinder"),
+    *("Feature", "Plane", "Cone", "Cylinder", "Blend"),
     *("fit_plane", "fit_cylinder", "fit_cone", "PlaneFit", "CylinderFit", "ConeFit"),
     *("CadpanelError", "ReferenceFileError", "PanelError", "SettingsError", "FitError", "DeliveryError", "ProofError"),
 }

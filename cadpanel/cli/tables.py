@@ -84,11 +84,11 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
 
 
 def _bends(report: ReportModel) -> str:
-    """What was taken for the bends between two flanges, and nothing where panels have none."""
+    """What was taken for the bends between two flanges, and nothing where panels have none, or several."""
     widths, whole = [], []
     for panel in report.panels:
         curved = [index for index, patch in enumerate(panel.patches) if patch.kind != "plane"]
-        if not curved or curved[0] == 0 or curved[-1] == len(panel.patches) - 1:
+        if not curved or curved != list(range(1, len(panel.patches) - 1)):
             return ""
         for end in panel.taken:
             widths.append(end[curved[-1] + 1] - end[curved[0]])

@@ -68,6 +68,14 @@ class Feature:
         """
         if not 1 <= len(patches) <= MOST_PATCHES:
             raise SettingsError(f"a feature has between 1 and {MOST_PATCHES} patches, not {len(patches)}")
+        for patch in patches:
+            if isinstance(patch, type) or not (hasattr(patch, "kind") and hasattr(patch, "carry")):
+                raise SettingsError(
+                    f"a feature is made of patches like Plane(), Cone() or Cylinder(), not of {patch!r}"
+                )
+        word: object = name
+        if word is not None and not (isinstance(word, str) and word.strip() and word.isprintable()):
+            raise SettingsError(f"the name of a feature must be a word that can be printed, not {name!r}")
         if cuts not in get_args(Cuts):
             raise SettingsError(f"the cuts of a feature must be one of {', '.join(get_args(Cuts))}, not '{cuts}'")
         set_ = object.__setattr__

@@ -12,6 +12,9 @@ from cadpanel.errors import SettingsError
 Value = float | tuple[float | None, float | None] | None
 """What a feature says of a number: its value, its bounds (None for an open side), or nothing, and the fit chooses."""
 
+LARGEST = 1e9
+"""No length in mm or angle beyond this is one of a panel."""
+
 Unit = Literal["length", "angle", "slope"]
 
 
@@ -52,6 +55,17 @@ class Number:
             return Number(name, unit, None, lower, upper)
         return Number(name, unit, _finite(name, value, math.nan))
 
+    def require(self, least: float, greatest: float, why: str) -> Number:
+        """This number, once it is seen that it may lie between two values.
+
+        Raises:
+            SettingsError: its value, or one of its bounds, lies outside; `why` completes the sentence.
+        """
+        given = (self.fixed,) if self.fixed is not None else (self.lower, self.upper)
+        if any(math.isfinite(value) and not least <= value <= greatest for value in given):
+            raise SettingsError(f"'{self.name}' must lie between {least:.6g} and {greatest:.6g}: {why}")
+        return self
+
     @property
     def sign(self) -> int:
         """1 or -1 where no value but 0 can have another sign, else 0."""
@@ -73,6 +87,13 @@ class Number:
 def _finite(name: str, value: object, open_: float) -> float:
     if value is None and math.isinf(open_):
         return open_
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(float(value)):
-        raise SettingsError(f"'{name}' must be a finite number, two bounds or nothing, not {value!r}")
-    return float(value)
+    if isinstance(value, bool) or not isinstance(value, Real):
+        number = math.nan
+    else:
+        try:
+            number = float(value)
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
+    if not abs(number) <= LARGEST:
+        raise SettingsError(f"'{name}' must be a finite number, two bounds or nothing, not {repr(value)[:40]}")
+    return number

@@ -12,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.numbers import Number, Value
+from cadpanel.features.numbers import LARGEST, Number, Value
 from cadpanel.geometry.frames import cross, rotate_about, rotation_twist
 
 Array = NDArray[np.float64]
+
+_QUARTER = 0.5 * np.pi
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +84,12 @@ class Plane:
 
     def numbers(self) -> tuple[Number, ...]:
         """Width (length) and turn (angle about n, counted the way of the walk)."""
-        return (Number.of("width", "length", self.width), Number.of("turn", "angle", self.turn))
+        return (
+            Number.of("width", "length", self.width).require(0.0, LARGEST, "a flange has no width below 0"),
+            Number.of("turn", "angle", self.turn).require(
+                -_QUARTER, _QUARTER, "the edges of a flange differ in direction by less than a quarter turn"
+            ),
+        )
 
     def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
         """See `Patch.carry`; on a plane only the sign of `way` and its share of both numbers matter."""
@@ -140,8 +147,12 @@ class Cone:
         """Normal radius at p (length), half angle and sweep (angles)."""
         return (
             Number.of("radius", "length", self.radius),
-            Number.of("half_angle", "angle", self.half_angle),
-            Number.of("sweep", "angle", self.sweep),
+            Number.of("half_angle", "angle", self.half_angle).require(
+                -_QUARTER, _QUARTER, "a cone of a quarter turn, in radians, is a disc"
+            ),
+            Number.of("sweep", "angle", self.sweep).require(
+                -np.pi, np.pi, "no roll or fold goes round by more than half a turn, in radians"
+            ),
         )
 
     def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:

@@ -90,8 +90,13 @@ class Choice:
         suited = [i for i in panels.tolist() if self._suits(self._reference.panels[i], place)]
         if not suited:
             return
-        part = replace(self._reference, panels=tuple(self._reference.panels[i] for i in suited), seams=())
-        problem, starts = pose(part, [self._feature(place, panel) for panel in part.panels])
+        try:
+            part = replace(self._reference, panels=tuple(self._reference.panels[i] for i in suited), seams=())
+            problem, starts = pose(part, [self._feature(place, panel) for panel in part.panels])
+        except PanelError as error:
+            # No start was found for one of them, which the next feature may suit better.
+            self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
+            return
         found = fit_alone(problem, starts, self._settings)
         self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
 

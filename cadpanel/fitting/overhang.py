@@ -42,7 +42,7 @@ def overhang(problem: Problem, reference: Reference, state: State) -> Array:
             stations = curves.stations()
             points, _ = curves.follow(np.broadcast_to(stations, (len(which), len(stations))))
             line = lines[group.panels, place]
-            there, back = _polyline_distance(points, line).max(axis=1), closest(curves, line)[0].max(axis=1)
+            there, back = _outline_distance(points, line).max(axis=1), closest(curves, line)[0].max(axis=1)
             result[group.panels] = np.maximum(result[group.panels], np.maximum(there, back))
     return result
 
@@ -64,11 +64,23 @@ def _resample(line: Array, count: int) -> Array:
     return line[np.round(np.linspace(0, len(line) - 1, count)).astype(np.intp)]
 
 
-def _polyline_distance(points: Array, line: Array) -> Array:
-    """(panels, q) distance of points (panels, q, 3) to polylines (panels, r, 3)."""
+def _outline_distance(points: Array, line: Array) -> Array:
+    """(panels, q) distance of points (panels, q, 3) to outlines (panels, r, 3): to their chords, or to the curve.
+
+    Half-way between two points of an arc its chord is off by the sagitta, which would be told as a distance; where the
+    cubic through the four nearest points comes closer, that counts.
+    """
     start, step = line[:, None, :-1], (line[:, 1:] - line[:, :-1])[:, None]
     square = np.maximum(np.sum(step**2, axis=-1), np.finfo(float).tiny)
     share = np.clip(np.sum((points[:, :, None] - start) * step, axis=-1) / square, 0.0, 1.0)
     foot = start + share[..., None] * step
-    nearest: Array = np.sqrt(np.min(np.sum((points[:, :, None] - foot) ** 2, axis=-1), axis=2))
-    return nearest
+    chords = np.sum((points[:, :, None] - foot) ** 2, axis=-1)
+    nearest = chords.argmin(axis=2)
+    rows = np.arange(len(line))[:, None]
+    first = np.clip(nearest - 1, 0, line.shape[1] - 4)
+    at = np.take_along_axis(share, nearest[..., None], axis=2)[..., 0] + nearest - first
+    basis = [-(at - 1) * (at - 2) * (at - 3) / 6, at * (at - 2) * (at - 3) / 2]
+    basis += [-at * (at - 1) * (at - 3) / 2, at * (at - 1) * (at - 2) / 6]
+    curve = sum((weight[..., None] * line[rows, first + k] for k, weight in enumerate(basis)), np.zeros(points.shape))
+    closer = np.minimum(chords.min(axis=2), np.sum((points - curve) ** 2, axis=-1))
+    return np.asarray(np.sqrt(closer))

@@ -80,13 +80,14 @@ class FitResult:
                 f"{m.max_deviation[far]:.2f} mm away as a {self.shapes[far].feature}, the best that there is; allow "
                 "more, allow wider gaps, or divide it further"
             )
+        missed = []
         gaps = np.maximum(m.widest_corners, m.seam_gap)
         if len(gaps) and gaps.max() > tolerance:
             worst = int(gaps.argmax())
             a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
-            return (
+            missed.append(
                 f"the gap tolerance of {tolerance:g} mm is not met: the seam between '{a}' and '{b}' stays open by "
-                f"{gaps[worst]:.2f} mm; allow a larger gap or more drift"
+                f"{gaps[worst]:.2f} mm"
             )
         limits = (
             ("along", m.drift_along, self.settings.drift_along),
@@ -94,11 +95,14 @@ class FitResult:
         )
         way, drift, limit = max(limits, key=lambda kind: float((kind[1] / m.lengths).max()) / kind[2])
         panel = int(np.argmax(drift / m.lengths))
-        return (
-            f"the drift limits are not met: panel '{self.reference.panels[panel].name}' leaves its outline by "
-            f"{drift[panel]:.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed; "
-            "allow more drift or a larger gap"
-        )
+        if drift[panel] > limit * m.lengths[panel]:
+            missed.append(
+                f"the drift limits are not met: panel '{self.reference.panels[panel].name}' leaves its outline by "
+                f"{drift[panel]:.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed"
+            )
+        # Where both are missed by far, no wider limit helps: the feature cannot follow.
+        advice = ("choose another feature, " if len(missed) > 1 else "") + "allow a larger gap or more drift"
+        return f"{', and '.join(missed)}; {advice}"
 
 
 def fit(reference: Reference, settings: FitSettings | None = None, progress: Progress | None = None) -> FitResult:

@@ -219,7 +219,7 @@ def _check_face(shape: PanelShape, where: str) -> None:
 def _crossing_cuts(length: float, at: str, where: str) -> str:
     return (
         f"the cut planes cross inside the panel{where}: only {length:.4g} mm are left between them {at}; "
-        "lengthen the panel or tilt its cuts less."
+        "divide it into fewer panels, or choose another feature."
     )
 
 
@@ -231,7 +231,8 @@ def _check_rulings(shape: PanelShape, where: str) -> None:
         raise PanelError(
             shape.name,
             f"ruling {int(ruling) + 1} runs at {angle:.4g} degrees to the cut plane at the {_ENDS[end]}{where}, nearly "
-            f"parallel; {math.degrees(math.asin(SMALLEST_CUT_COSINE)):.4g} are needed: tilt the cut less.",
+            f"parallel; {math.degrees(math.asin(SMALLEST_CUT_COSINE)):.4g} are needed: divide the panel "
+            "further, or choose another feature.",
         )
 
 
@@ -265,7 +266,8 @@ def _check_cone(shape: PanelShape, index: int, patch: ConePatch, where: str) -> 
 def _no_ellipse(index: int, end: int, eccentricity: float, where: str) -> str:
     return (
         f"the cut at the {_ENDS[end]} is too oblique to patch {index + 1}{where}: its section is no ellipse "
-        f"(eccentricity {eccentricity:.4g}, at most {LARGEST_ECCENTRICITY:g} can be built); tilt the cut less."
+        f"(eccentricity {eccentricity:.4g}, at most {LARGEST_ECCENTRICITY:g} can be built): divide the panel further, "
+        "or choose another feature."
     )
 
 

@@ -122,12 +122,11 @@ def _leaning(sheet: Sheet) -> Array:
     """
     if len(sheet.sides) != 4:
         return np.zeros(len(_INDIFFERENT))
-    bends = sheet.bends
     lengths = np.array([side.length for side in sheet.sides])
     chords = np.array([side.points[-1] - side.points[0] for side in sheet.sides])
     ways = chords[:2] - chords[2:]
     ways = np.abs(ways) / np.linalg.norm(ways, axis=1, keepdims=True)
-    bend = abs(bends[0] + bends[2]) - abs(bends[1] + bends[3])
+    bend = sheet.bend_of_pair(0) - sheet.bend_of_pair(1)
     return np.array([bend, (lengths[1::2].sum() - lengths[::2].sum()) / lengths.sum(), *(ways[1] - ways[0])])
 
 

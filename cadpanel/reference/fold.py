@@ -14,6 +14,8 @@ from cadpanel.reference.model import PanelReference
 # Between flanges the normals of a fold turn by at least this much, degrees; those of a rolled sheet by this.
 LEAST_FOLD = 3.0
 LEAST_ROLL = 0.2
+# A cylinder or cone of nearly half a turn cannot be told from one that goes round the other way, degrees.
+MOST_TURN = 174.0
 # Refused is what turns along the fold, against across it, by more than this: the geometric mean of the ratio of the
 # angles and of the ratio of the angles per length. On a sphere it is 0.5 and more up to sides of 1 : 4, and 1 on a
 # square; on a lip that folds by 60 degrees and whose flanges turn by 25 degrees on the way it is 0.3 to 0.5.
@@ -68,6 +70,12 @@ def check_fold(panel: PanelReference, source: str, *, flanged: bool, folds: int)
             panel.name,
             f"in '{source}', it is flat (its normals turn by {across:.2g} degrees, a fold needs {least:g}): "
             "give it a flat feature, or leave it out.",
+        )
+    if across > MOST_TURN * folds:
+        raise PanelError(
+            panel.name,
+            f"in '{source}', it turns by {across:.0f} degrees, and one roll or fold reaches round {MOST_TURN:g}: "
+            "divide it further.",
         )
     both_ways = turns < least or along / turns * np.sqrt(turning.slenderness) > MOST_DOUBLE_CURVATURE
     if both_ways and (flanged or along > GENTLE):

@@ -50,6 +50,16 @@ class Sheet:
         """(sides,) angle by which the normals lean forwards on the way along each side, radians; > 0 where convex."""
         return np.asarray(self.leans.sum(axis=1))
 
+    def bend_of_pair(self, side: int) -> float:
+        """By how much a side and the opposite one, of four, bend at most between any two places on them, radians.
+
+        Where both bend one way all along that is the sum of their `bends`; a Z profile bends to and fro, and nothing is
+        left of it in the end. Bends that the two sides have in opposite ways, as on a twisted flat panel, do not count.
+        """
+        leans = self.leans[side] + self.leans[(side + 2) % 4][::-1]
+        turned = np.concatenate([[0.0], np.cumsum(leans)])
+        return float(np.ptp(turned))
+
     @cached_property
     def leans(self) -> Array:
         """(sides, q - 1) angles by which the normals lean forwards from each point of a side to the next, radians.

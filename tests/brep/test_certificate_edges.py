@@ -157,3 +157,11 @@ def test_panels_may_meet_all_round(tmp_path):
     found = certified(tmp_path, shapes, seams)
     assert found.failures == ()
     assert found.max_seam_gap < 1e-9
+
+
+@pytest.mark.parametrize("turn", [0.001, 0.08])
+def test_a_polygon_may_hardly_turn_at_a_corner(tmp_path, turn):
+    # The walls beside such a corner meet almost smoothly, which nobody promised of them.
+    outline = np.array([[0.0, 0.0, 0.0], [500.0, -500.0 * turn, 0.0], [1000.0, 0.0, 0.0], [500.0, 700.0, 0.0]])
+    kite = PolygonShape(name="A", feature="planar-polygon", outline=outline, normal=UP)
+    assert certified(tmp_path, [kite], []).failures == ()

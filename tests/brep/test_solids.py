@@ -87,6 +87,15 @@ def test_sweeps_up_to_half_a_turn_are_exact(sweep):
     check(folded_panel(sweep=sweep, half_angle=0.05), 3.0)
 
 
+@pytest.mark.parametrize("sweep", [0.006, 0.03])
+@pytest.mark.parametrize("radius", [2e4, 5e4, 1e5, -5e4])
+@pytest.mark.parametrize("half_angle", [0.0, 1e-6, 0.5])
+def test_gentle_bends_of_large_radius_are_exact(radius, sweep, half_angle):
+    # Rounding rules their parameter curves: more poles would make these worse, not better.
+    bend = sweep if radius > 0.0 else -sweep
+    check(folded_panel(radius=radius, sweep=bend, half_angle=half_angle, chain="c", widths=(), turns=()), 3.0)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_a_solid_has_two_skins_and_four_walls_and_nothing_else(seed):
     shape = random_panel(seed)

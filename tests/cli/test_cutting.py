@@ -31,6 +31,14 @@ def test_fit_of_a_strip_that_is_cut_delivers_its_panels(
     assert len(report["seams"]) == 2
 
 
+def test_flat_panels_are_reported_without_a_bend(run: Run, strip: Path, tmp_path: Path) -> None:
+    words = ("--faces", "1", "--divide", "2", "--feature", "planar-polygon", "--method", "local", "--unit", "mm")
+    answer = run("fit", strip, *words, "--out", tmp_path / "out")
+    assert answer.code in (0, 1), answer.err
+    assert "Certificate: 2 solids valid (12 plane faces)" in answer.out
+    assert "Taken for the bend" not in answer.out
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [

@@ -286,3 +286,38 @@ def test_features_that_say_the_same_are_equal():
     assert Feature(Plane(), Cone()) != Feature(Plane(), Cone(radius=(10.0, 20.0)))
     assert Feature(Plane(), Cone()) != Feature(Plane(), Cone(), cuts="upright")
     assert Polygon(5) == Polygon(5) != Polygon(6)
+
+
+@pytest.mark.parametrize("patch", ["plane", 3, None, Plane, [Plane()], Feature(Cone())])
+def test_what_is_no_patch_is_refused(patch):
+    with pytest.raises(SettingsError, match="a feature is made of patches"):
+        Feature(patch)
+
+
+@pytest.mark.parametrize("name", ["", " ", b"roof", 3, "a\nb", "\ud800", ["roof"]])
+def test_a_name_that_cannot_be_printed_is_refused(name):
+    with pytest.raises(SettingsError, match="the name of a feature must be a word"):
+        Feature(Cone(), name=name)
+
+
+@pytest.mark.parametrize(
+    ("patch", "number"),
+    [
+        (lambda: Plane(width=-5.0), "width"),
+        (lambda: Plane(width=(-5.0, 3.0)), "width"),
+        (lambda: Plane(turn=2.0), "turn"),
+        (lambda: Cone(half_angle=100.0), "half_angle"),
+        (lambda: Cone(half_angle=(0.0, 1.6)), "half_angle"),
+        (lambda: Cone(sweep=7.0), "sweep"),
+        (lambda: Cylinder(sweep=(3.0, 8.0)), "sweep"),
+    ],
+)
+def test_numbers_that_no_panel_has_are_refused(patch, number):
+    with pytest.raises(SettingsError, match=f"^'{number}' must lie between"):
+        patch()
+
+
+@pytest.mark.parametrize("radius", [10**400, 1e300, -1e12])
+def test_a_radius_beyond_all_bounds_is_refused(radius):
+    with pytest.raises(SettingsError, match=r"^'radius' must be a finite number"):
+        Cylinder(radius=radius)

@@ -104,6 +104,39 @@ def test_sheet_that_bends_to_and_fro_may_be_a_double_fold():
     assert as_fold(raw_panel(wave), folds=2).four_sided
 
 
+def zed(degrees, taper, twist):
+    """A Z profile of five stretches of 400 mm, folded to and fro by so many degrees, tapered and twisted."""
+    along = np.linspace(0.0, 5.0, 2001)
+    angle = np.radians(degrees) * (np.clip(along - 1.0, 0.0, 1.0) - np.clip(along - 3.0, 0.0, 1.0) - 0.5)
+    ways = np.stack([np.cos(angle), -np.sin(angle)])
+    steps = 0.5 * (ways[:, 1:] + ways[:, :-1]) * 400.0 * np.diff(along)
+    profile = np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
+
+    def surface(u, v):
+        y, z = ((1.0 - taper * v) * np.interp(u, along, values) for values in profile)
+        return np.stack([2000.0 * v + 0.0 * y, y, z + twist * v * y], axis=-1)
+
+    return raw_panel(surface, "zed", cuts=(0.0, 1.0, 2.0, 3.0, 4.0, 5.0))
+
+
+@pytest.mark.parametrize("degrees", [17.0, 57.0, 86.0])
+@pytest.mark.parametrize(("taper", "twist"), [(0.0, 0.0), (0.1, 0.0), (0.1, 0.02)])
+def test_a_zed_whose_bends_cancel_knows_its_ends(degrees, taper, twist):
+    panel = as_fold(zed(degrees, taper, twist), folds=2)
+    for end in panel.edge_normals[:2]:
+        assert np.degrees(np.arccos((end @ end.T).min())) == pytest.approx(degrees, abs=2.0)
+    assert abs(panel.corners[1, 0, 0] - panel.corners[0, 0, 0]) == pytest.approx(2000.0)
+
+
+@pytest.mark.parametrize(("degrees", "refused"), [(170.0, False), (180.0, True), (200.0, True)])
+def test_what_goes_round_by_half_a_turn_is_divided(degrees, refused):
+    if not refused:
+        as_fold(vault(degrees), flanged=False)
+        return
+    with pytest.raises(PanelError, match=r"one roll or fold reaches round 174: divide it further"):
+        as_fold(vault(degrees), flanged=False)
+
+
 def test_a_fold_that_turns_by_a_little_less_than_the_least_is_flat_and_by_a_little_more_it_is_not():
     for least, flanged in ((LEAST_FOLD, True), (LEAST_ROLL, False)):
         assert as_fold(vault(1.05 * least), flanged=flanged).four_sided

@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
 # Samples whose distance from one line is below this share of their extent lie on it: no surface is determined.
+LARGEST = 1e15
+"""Coordinates beyond this lose all digits of a panel."""
 _COLLINEAR = 1e-12
 
 
@@ -94,12 +96,14 @@ def clouds(points: ArrayLike, normals: ArrayLike | None, weights: ArrayLike | No
     used = w > 0.0
     _refuse(~np.all(np.isfinite(w) & (w >= 0.0), axis=1), "has a weight that is negative or no number", what)
     _refuse(_any_not_finite(x, used), "has a coordinate that is no number", what)
+    _refuse(np.any(used & (np.abs(x).max(axis=2) > LARGEST), axis=1), f"has a coordinate beyond {LARGEST:g}", what)
     counts = np.count_nonzero(used, axis=1)
     _refuse(counts < least, f"has too few samples: {what} needs at least {least}", what, counts)
     x = np.where(used[:, :, None], x, 0.0)
     if outward is not None:
         _refuse(_any_not_finite(outward, used), "has a normal that is no number", what)
         outward = np.where(used[:, :, None], outward, 0.0)
+        _refuse(np.abs(outward).max(axis=(1, 2)) > LARGEST, f"has a normal longer than {LARGEST:g}", what)
     share = w / w.max(axis=1, keepdims=True)
     share /= share.sum(axis=1, keepdims=True)
     return _moved_to_main_axes(x, outward, share, counts, what)

@@ -44,6 +44,14 @@ def test_a_coordinate_that_is_no_number_is_refused(fit, value):
 
 
 @every_fit
+def test_coordinates_and_normals_that_overflow_are_refused(fit):
+    with pytest.raises(cp.FitError, match=r"a coordinate beyond 1e\+15"):
+        fit(1e200 * samples(10))
+    with pytest.raises(cp.FitError, match=r"a normal longer than 1e\+15"):
+        fit(samples(10), normals=1e200 * samples(10))
+
+
+@every_fit
 def test_a_normal_that_is_no_number_is_refused(fit):
     normals = samples(10)
     normals[0, 0] = np.nan

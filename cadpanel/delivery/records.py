@@ -31,6 +31,8 @@ from cadpanel.fitting.stretches import taken
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
+# An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
+WORTH_A_NOTE = 0.02
 FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
@@ -120,7 +122,18 @@ def _panel(measures: Measures, index: int, reference: PanelReference, built: Pan
         patches=patch_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
         moved=built.moved,
-        notes=built.notes,
+        notes=(*built.notes, *_outline_note(measures, index)),
+    )
+
+
+def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
+    """What to say of a panel whose outline leaves the drawing's though its corners and its surface do not."""
+    beyond = float(measures.hausdorff[index])
+    if beyond - measures.max_deviation[index] - measures.drift[index] <= WORTH_A_NOTE * measures.lengths[index]:
+        return ()
+    return (
+        f"Between its corners its outline is up to {beyond:.0f} mm away from the drawing's, as its free edges are "
+        "straight and its ends lie in planes.",
     )
 
 

@@ -23,8 +23,9 @@ STEEPEST = np.radians(30.0)
 # Radius and sweep of a patch keep this share of what they start with, and a sweep stays below half a turn.
 LEAST_SHARE = 0.1
 WIDEST_SWEEP = np.radians(175.0)
-# Slopes of a cut plane against the panel's own frame.
-MOST_SLOPE = 2.0
+# Slopes of a cut plane against the panel's own frame: flat panels may have corners of 11 degrees, mitres lean less.
+MOST_SKEW = 5.0
+MOST_TILT = 2.0
 LARGEST_RADIUS = 1e7
 """mm; beyond it a patch is flat to within rounding."""
 
@@ -62,5 +63,6 @@ def _natural(number: Number, begun: Array, length: float) -> tuple[Array, Array]
         most = WIDEST_SWEEP if what == "sweep" else LARGEST_RADIUS / length
         return np.where(sign < 0.0, -most, least), np.where(sign < 0.0, -least, most)
     if number.name.startswith("cut") and what in ("skew", "tilt"):
-        return np.full(begun.shape[1], -MOST_SLOPE), np.full(begun.shape[1], MOST_SLOPE)
+        most = np.full(begun.shape[1], MOST_SKEW if what == "skew" else MOST_TILT)
+        return -most, most
     return -free, free

@@ -15,6 +15,7 @@ from cadpanel.reference.orient import align, find_seams, orient
 from cadpanel.reference.outline import find_outline
 from cadpanel.reference.polyline import norm
 from cadpanel.reference.sheet import Sheet, sheet
+from cadpanel.reference.unmet import refuse_overlaps, unmet_notes
 
 # Ends of panels that meet may lie this far apart in the file, mm.
 SEAM_TOLERANCE = 1.0
@@ -46,13 +47,15 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
     _check_tolerance(sheets, seam_tolerance)
     refuse_duplicates(sheets, source, seam_tolerance)
     contacts = find_contacts(sheets, source, seam_tolerance)
+    refuse_overlaps(sheets, contacts, source, seam_tolerance)
+    notes = unmet_notes(sheets, contacts, source, seam_tolerance)
     flipped = outer_faces(sheets, contacts)
     sheets = [one.other_face() if flip else one for one, flip in zip(sheets, flipped, strict=True)]
     contacts = after_flipping(contacts, sheets, flipped)
     first = first_ends(sheets, contacts)
     panels = [orient(one, end) for one, end in zip(sheets, first, strict=True)]
     aligned, seams = align(panels, find_seams(panels, sheets, first, contacts), seam_tolerance)
-    return Reference(source=source, panels=aligned, seams=seams, seam_tolerance=seam_tolerance)
+    return Reference(source=source, panels=aligned, seams=seams, seam_tolerance=seam_tolerance, notes=notes)
 
 
 def _is_length(value: object) -> bool:

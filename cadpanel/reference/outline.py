@@ -20,8 +20,11 @@ Array = NDArray[np.float64]
 # Faces of one panel touch where they come within this, and within this part of the panel's size.
 TOUCH_TOLERANCE = 1.0
 TOUCH_PART = 1e-3
-# The outline has a corner where it turns by more than this in the surface, degrees.
+# The outline has a corner where it turns by more than this in the surface, degrees. Where it turns less, but by more
+# than the second, a panel with four clear corners has bent edges, and any other one has a corner there, too.
 CORNER_ANGLE = 30.0
+OBTUSE_CORNER = 5.0
+FOUR = 4
 FEWEST_CORNERS = 3
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6
@@ -203,7 +206,10 @@ def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
 
 def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, ...]:
     """Cut a closed loop of edges into its sides."""
-    corners = np.flatnonzero(_turns(loop) > CORNER_ANGLE).tolist()
+    turns = _turns(loop)
+    corners = np.flatnonzero(turns > CORNER_ANGLE).tolist()
+    if len(corners) != FOUR:
+        corners = np.flatnonzero(turns > OBTUSE_CORNER).tolist()
     if len(corners) < FEWEST_CORNERS:
         places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners)
         raise PanelError(

@@ -66,11 +66,11 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> S
             for side in (-0.5, 0.5)
         ]
     )
-    inside = _check_room(surface, width, middles, borders, sections, source)
+    _check_room(surface, width, middles, borders, sections, source)
     faces = _along_parameters(sections, borders, surface.faces)
     if faces is None:
         what = f"the surface of {surface.numbers} of '{source}' along its lip"
-        pieces = _cut_along_curves(surface, sections, borders[inside], what, tolerance)
+        pieces = _cut_along_curves(surface, sections, borders, what, tolerance)
         faces = _within(pieces, surface, _cloud(sections, square), 0.5 * width, source)
     return _joined(faces, surface, source, tolerance)
 
@@ -98,28 +98,25 @@ def _border(section: CrossSection, square: Array, wanted: float) -> float:
 
 def _check_room(
     surface: Surface, width: float, middles: Array, borders: Array, sections: Sections, source: str
-) -> list[bool]:
-    """Whether each border of the band lies on the surface; one that lies beyond it everywhere need not be cut.
+) -> None:
+    """Refuse a band that does not lie on the surface.
 
     Raises:
-        ReferenceFileError: both lie beyond it, or one of them runs over a long edge.
+        ReferenceFileError: both its borders lie beyond it, or one of them somewhere.
     """
     widths = np.array([section.length[-1] for section in sections.sections])
-    inside = [bool(np.all(borders[0] > 0.0)), bool(np.all(borders[1] < widths))]
-    outside = [bool(np.all(borders[0] <= 0.0)), bool(np.all(borders[1] >= widths))]
-    if all(outside):
+    if np.all(borders[0] <= 0.0) and np.all(borders[1] >= widths):
         raise ReferenceFileError(
             f"The surface of {surface.numbers} of '{source}' is {widths.min():.6g} mm wide, no more than the band of "
             f"{width:g} mm about its lip: divide all of it."
         )
-    if not all(one or other for one, other in zip(inside, outside, strict=True)):
+    if np.any(borders[0] <= 0.0) or np.any(borders[1] >= widths):
         # Of the sections' halves as long as the band's, the shortest tells how wide a band has room everywhere.
         room = np.minimum(middles / (middles - borders[0]), (widths - middles) / (borders[1] - middles))
         raise ReferenceFileError(
             f"The band of {width:g} mm about the lip of the surface of {surface.numbers} of '{source}' runs over its "
-            f"long edge: ask for less than {width * float(room.min()):.6g} mm, or divide all of it."
+            f"long edge: give less than {width * float(room.min()):.6g} mm, or divide all of it."
         )
-    return inside
 
 
 def _along_parameters(

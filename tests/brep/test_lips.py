@@ -5,11 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.gp import gp_Pln
+from OCP.TopAbs import TopAbs_VERTEX
+from OCP.TopoDS import TopoDS
 
 import cadpanel as cp
-from cadpanel.brep.model import compound_of
+from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.split import area_of
 from cadpanel.errors import ReferenceFileError
 from tests.brep.test_subdivide import EQUAL, model_of, panels_of
@@ -104,7 +107,7 @@ def test_a_band_as_wide_as_the_strip_is_refused(rows, width, sentence):
 
 def test_a_band_that_runs_over_a_long_edge_is_refused_with_the_width_that_has_room():
     surface = fold(taper=0.5)
-    with pytest.raises(ReferenceFileError, match=r"runs over its long edge: ask for less than (9\d\d)"):
+    with pytest.raises(ReferenceFileError, match=r"runs over its long edge: give less than (9\d\d)"):
         panels_of(model_of(*faces_of(surface, WHOLE)), divide=3, lip=1200.0)
 
 
@@ -112,3 +115,26 @@ def test_a_flat_strip_has_no_lip():
     flat = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 6000.0, 0.0, 900.0).Face()
     with pytest.raises(ReferenceFileError, match="has no lip"):
         panels_of(model_of(flat), divide=3, lip=100.0)
+
+
+def test_a_lip_beside_a_long_edge_has_no_band_on_that_side():
+    # A flange of 80 mm beside the arc, however wide the other one is.
+    faces = faces_of(fold(), ((0.0, 1.0), (0.9, 1.0, 2.0, 3.0)))
+    with pytest.raises(ReferenceFileError, match=r"runs over its long edge: give less than 42\d"):
+        panels_of(model_of(*faces), divide=3, lip=600.0)
+    assert len(panels_of(model_of(*faces), divide=3, lip=400.0)) == 3
+
+
+def test_strips_side_by_side_are_named_in_order_however_their_middles_are_rounded():
+    def strips(shift):
+        surfaces = [lambda u, v, y=y: fold()(u, v) + np.array([shift, y, 0.0]) for y in (0.0, 3000.0, 6000.0)]
+        parts = [faces_of(surface, WHOLE)[0] for surface in surfaces]
+        panels = panels_of(model_of(*(parts[i] for i in (2, 0, 1))), divide=1)
+        return [float(np.mean([p[1] for f in panel.faces for p in corners_of(f)])) for panel in panels]
+
+    for shift in (0.5, 0.5 + 1e-9, 0.5 - 1e-9):
+        assert strips(shift) == sorted(strips(shift))
+
+
+def corners_of(face):
+    return [BRep_Tool.Pnt_s(TopoDS.Vertex_s(vertex)).Coord() for vertex in shapes_of(face, TopAbs_VERTEX)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from OCP.Standard import Standard_Failure
 from scipy.spatial import cKDTree
 
+from cadpanel.brep.creases import crease_of
 from cadpanel.brep.model import ModelFace
 from cadpanel.brep.patch import Patch, patch_of
 from cadpanel.brep.sampling import sample_faces
@@ -79,6 +80,12 @@ def skin_faces(
         if skin.area <= SLIVER * around**2 or width < HAIR:
             notes.append(f"Face {face.number} of '{source}' is only {width:.2g} mm wide and is left out.")
             continue
+        crease = crease_of(skin.patch)
+        if crease:
+            notes.append(
+                f"Face {face.number} of '{source}' has a crease of {crease:.3g} degrees inside, which counts as a part "
+                "of its bend: split it there, if panels should end on it."
+            )
         measured.append(skin)
     kept, doubled = _without_doubles(measured, source, tolerance)
     if not kept:

@@ -2,9 +2,12 @@
 
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_Transform
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_Transform
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
+from OCP.Geom import Geom_BSplineSurface
 from OCP.gp import gp_Pnt, gp_Trsf
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.loading import load_model
@@ -114,3 +117,23 @@ def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):
     with pytest.raises(CadpanelError, match=r"The surface of faces 1, 2 and 3 is no strip that could be divided"):
         read_raw_panels(path, how(divide=2))
     assert len(load_model(path, 1.0).faces()) == 3
+
+
+@pytest.mark.parametrize(("angle", "told"), [(0.0, False), (0.2, False), (5.0, True), (60.0, True)])
+def test_a_crease_inside_a_face_is_told(tmp_path, angle, told):
+    rise = 500.0 * np.tan(np.radians(angle))
+    poles = TColgp_Array2OfPnt(1, 3, 1, 2)
+    for row, (y, z) in enumerate(((0.0, 0.0), (500.0, 0.0), (1000.0, rise)), start=1):
+        for column, x in enumerate((0.0, 2000.0), start=1):
+            poles.SetValue(row, column, gp_Pnt(x, y, z))
+    knots, ends = TColStd_Array1OfReal(1, 3), TColStd_Array1OfReal(1, 2)
+    counts, twice = TColStd_Array1OfInteger(1, 3), TColStd_Array1OfInteger(1, 2)
+    for place, (value, count) in enumerate(((0.0, 2), (0.5, 1), (1.0, 2)), start=1):
+        knots.SetValue(place, value)
+        counts.SetValue(place, count)
+    for place in (1, 2):
+        ends.SetValue(place, place - 1.0)
+        twice.SetValue(place, 2)
+    face = BRepBuilderAPI_MakeFace(Geom_BSplineSurface(poles, knots, ends, counts, twice, 1, 1), 1e-7).Face()
+    notes = read_raw_panels(write_shape(tmp_path / "creased.brep", face), how(grid=(1, 2))).notes
+    assert any(f"has a crease of {angle:.3g} degrees inside" in note for note in notes) == told

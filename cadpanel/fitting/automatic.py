@@ -13,6 +13,9 @@ from cadpanel.fitting.measures import largest_deviations
 from cadpanel.fitting.methods import fit_alone
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.geometry.buildable import check_skin
+from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.fold import check_fold
 from cadpanel.reference.model import PanelReference, Reference
 
@@ -98,7 +101,9 @@ class Choice:
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
         found = fit_alone(problem, starts, self._settings)
-        self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
+        deviations = largest_deviations(problem, part, found.unknowns)
+        buildable = [_can_be_built(shape) for shape in panel_shapes(problem, part, found.unknowns)]
+        self.deviations[suited, place] = np.where(buildable, deviations, np.inf)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
         if CHEAPEST_FIRST[place] == POLYGON:
@@ -115,3 +120,11 @@ class Choice:
 
     def _feature(self, place: int, panel: PanelReference) -> PanelFeature:
         return for_corners(CHEAPEST_FIRST[place], tilt=self._settings.tilt)(len(panel.edges))
+
+
+def _can_be_built(shape: AnyShape) -> bool:
+    try:
+        check_skin(shape)
+    except PanelError:
+        return False
+    return True

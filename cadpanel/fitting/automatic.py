@@ -83,6 +83,20 @@ class Choice:
                     break
         return changed
 
+    def forbid(self, panels: NDArray[np.intp]) -> bool:
+        """Take panels' features away, as nothing could be built of them among their neighbours, and choose others.
+
+        Returns:
+            whether each of them has another one.
+        """
+        self.deviations[panels, self.chosen[panels]] = np.inf
+        for panel in panels.tolist():
+            for place in np.flatnonzero(~self._tried[panel]).tolist():
+                if self.deviations[panel].min() > self._largest:
+                    self._try(place, np.array([panel]))
+        self.chosen[panels] = self._first_within(self.deviations[panels])
+        return bool(np.isfinite(self.deviations[panels, self.chosen[panels]]).all())
+
     def _first_within(self, deviations: Array) -> NDArray[np.intp]:
         within = deviations <= self._largest
         first: NDArray[np.intp] = np.where(within.any(axis=1), within.argmax(axis=1), deviations.argmin(axis=1))
@@ -102,7 +116,7 @@ class Choice:
             return
         found = fit_alone(problem, starts, self._settings)
         deviations = largest_deviations(problem, part, found.unknowns)
-        buildable = [_can_be_built(shape) for shape in panel_shapes(problem, part, found.unknowns)]
+        buildable = [can_be_built(shape) for shape in panel_shapes(problem, part, found.unknowns)]
         self.deviations[suited, place] = np.where(buildable, deviations, np.inf)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
@@ -122,7 +136,8 @@ class Choice:
         return for_corners(CHEAPEST_FIRST[place], tilt=self._settings.tilt)(len(panel.edges))
 
 
-def _can_be_built(shape: AnyShape) -> bool:
+def can_be_built(shape: AnyShape) -> bool:
+    """Whether an exact skin can be built of a panel."""
     try:
         check_skin(shape)
     except PanelError:

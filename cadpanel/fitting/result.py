@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.features.catalogue import PanelFeature
-from cadpanel.fitting.automatic import Choice
+from cadpanel.fitting.automatic import Choice, can_be_built
 from cadpanel.fitting.measures import Measures, measure
 from cadpanel.fitting.methods import Fitted, fit_concurrent, fit_local, fit_two_stage
 from cadpanel.fitting.problem import pose
@@ -22,7 +22,7 @@ from cadpanel.reference.model import Reference
 Array = NDArray[np.float64]
 
 # How often panels may be given a closer feature because closing the seams took them too far.
-_PROMOTIONS = 3
+_PROMOTIONS = 5
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
 Progress = Callable[[str, int, float], None]
 
@@ -124,9 +124,14 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
         return _fit(reference, how, features, began, progress)
     choice = Choice(reference, how)
     result = _fit(reference, how, choice.features(), began, progress)
-    # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better.
+    # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better, and those
+    # that cannot be built any more another one.
     for _ in range(_PROMOTIONS):
-        if result.tolerance_met or not choice.promote(_offenders(result)):
+        lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
+        if len(lost):
+            if not choice.forbid(lost):
+                break
+        elif result.tolerance_met or not choice.promote(_offenders(result)):
             break
         result = _fit(reference, how, choice.features(), began, progress)
     return result

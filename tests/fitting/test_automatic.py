@@ -1,0 +1,87 @@
+"""`auto`: each panel gets the cheapest feature that will do, and another one where it will not."""
+
+import numpy as np
+import pytest
+
+from cadpanel.features.catalogue import feature
+from cadpanel.fitting import automatic
+from cadpanel.fitting.automatic import CHEAPEST_FIRST, Choice
+from cadpanel.fitting.result import fit
+from cadpanel.fitting.settings import FitSettings
+from tests.instances import random_polygon, random_shapes
+from tests.known_panels import alone
+
+# Panels that are exactly what their feature is; each is cheapest for itself.
+KINDS = [
+    "cylinder",
+    "cone",
+    "plane-cylinder-plane",
+    "plane-cone-plane",
+    "tri-cone",
+    "plane-cone-cone-plane",
+    "plane-cone-plane-cone-plane",
+]
+CLOSE = FitSettings(feature="auto", max_deviation=0.01, method="local")
+
+
+def known():
+    shapes = [random_shapes(feature(kind), 2, 1)[0] for kind in KINDS]
+    return alone(random_polygon(3, 5), *shapes)
+
+
+def names(choice):
+    return [CHEAPEST_FIRST[place] for place in choice.chosen]
+
+
+def test_panels_of_every_kind_get_their_own_feature():
+    reference = known()
+    assert names(Choice(reference, CLOSE)) == ["planar-polygon", *KINDS]
+    result = fit(reference, CLOSE)
+    assert [shape.feature for shape in result.shapes] == ["planar-polygon", *KINDS]
+    assert result.measures.max_deviation.max() <= 0.01
+
+
+def test_a_wider_limit_gives_cheaper_features():
+    reference = known()
+    chosen = [
+        Choice(reference, FitSettings(feature="auto", max_deviation=most)).chosen for most in (0.01, 20.0, 5000.0)
+    ]
+    assert np.all(np.diff(chosen, axis=0) <= 0)
+    assert np.any(np.diff(chosen, axis=0) < 0, axis=1).all()
+    assert not chosen[-1].any()
+
+
+def test_a_feature_that_is_taken_away_is_replaced_by_the_next_that_will_do():
+    choice = Choice(known(), CLOSE)
+    folded = 1 + KINDS.index("plane-cone-plane")
+    assert choice.forbid(np.array([folded]))
+    # A tri-cone can follow a cone between two flanges only nearly; three patches of the right kind can exactly.
+    assert CHEAPEST_FIRST.index("plane-cone-plane") < choice.chosen[folded]
+    assert choice.deviations[folded, choice.chosen[folded]] < np.inf
+    others = np.delete(np.arange(len(choice.chosen)), folded)
+    assert [names(choice)[i] for i in others] == [["planar-polygon", *KINDS][i] for i in others]
+
+
+def test_when_all_are_taken_away_it_says_so():
+    choice = Choice(known(), CLOSE)
+    assert not all(choice.forbid(np.array([0])) for _ in CHEAPEST_FIRST)
+
+
+def test_panels_that_cannot_be_built_among_their_neighbours_get_another_feature(monkeypatch):
+    """What cannot be built is told by the builder; here it refuses every cylinder."""
+    built = automatic.can_be_built
+    refused = lambda shape: shape.feature != "cylinder" and built(shape)  # noqa: E731
+    monkeypatch.setattr("cadpanel.fitting.result.can_be_built", refused)
+    result = fit(alone(random_shapes(feature("cylinder"), 2, 1)[0]), CLOSE)
+    assert result.shapes[0].feature != "cylinder"
+    assert result.measures.max_deviation.max() <= 0.01
+
+
+@pytest.mark.parametrize("most", [0.01, 50.0])
+def test_promoting_gives_the_next_closer_feature(most):
+    choice = Choice(known(), FitSettings(feature="auto", max_deviation=most))
+    before = choice.chosen.copy()
+    choice.promote(np.arange(len(before)))
+    rows = np.arange(len(before))
+    assert np.all(choice.chosen >= before)
+    assert np.all(choice.deviations[rows, choice.chosen] <= choice.deviations[rows, before])

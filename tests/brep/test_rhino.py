@@ -108,6 +108,49 @@ def test_trimmed_plane_keeps_its_outline(tmp_path):
     assert area_of(face.face, exactly=True) == pytest.approx(np.pi * 700.0**2, rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    "far_corners",
+    [
+        ((500.0, 1000.0, 0.0), (3500.0, 1000.0, 0.0)),
+        ((-2000.0, 1000.0, 0.0), (1000.0, 1000.0, 0.0)),
+        ((-400.0, 1000.0, 0.0), (3400.0, 1000.0, 0.0)),
+        ((-400.0, 1000.0, 300.0), (3400.0, 1000.0, -100.0)),
+    ],
+    ids=["parallelogram", "slender parallelogram", "trapezoid", "hypar"],
+)
+def test_polysurface_whose_face_is_no_rectangle_is_the_same_in_every_point(tmp_path, far_corners):
+    surface = rhino.NurbsSurface.Create(3, False, 2, 2, 2, 2)
+    for knots in (surface.KnotsU, surface.KnotsV):
+        knots[0], knots[1] = 0.0, 1.0
+    for j, row in enumerate((((0.0, 0.0, 0.0), (3000.0, 0.0, 0.0)), far_corners)):
+        for i, point in enumerate(row):
+            surface.Points[i, j] = rhino.Point4d(*point, 1.0)
+    file = file_in()
+    file.Objects.AddBrep(rhino.Brep.CreateFromSurface(surface))
+    (face,) = load_model(written(tmp_path / "quad.3dm", file)).faces()
+    assert patch_of(face.face).whole
+    assert_same_surface(face.face, surface)
+
+
+def placed_once(geometry, transform):
+    """A file with a block of one object, placed once."""
+    file = file_in()
+    file.InstanceDefinitions.Add(
+        "panel", "", "", "", rhino.Point3d(0.0, 0.0, 0.0), (geometry,), (rhino.ObjectAttributes(),)
+    )
+    file.Objects.AddInstanceObject(rhino.InstanceReference(file.InstanceDefinitions[0].Id, transform))
+    return file
+
+
+def test_sheared_block_of_a_polysurface_is_sheared(tmp_path):
+    surface, shear = bent_surface(), rhino.Transform(1.0)
+    shear.M02 = 1.0
+    file = placed_once(rhino.Brep.CreateFromSurface(surface), shear)
+    (face,) = load_model(written(tmp_path / "sheared.3dm", file)).faces()
+    assert surface.Transform(shear)
+    assert_same_surface(face.face, surface)
+
+
 def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_path):
     file = file_in()
     for name, color, visible in (("Skin", (10, 20, 30, 255), True), ("Off", (0, 0, 0, 255), False)):

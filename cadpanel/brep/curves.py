@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.Standard import Standard_Failure
-from OCP.TopoDS import TopoDS_Edge
+from OCP.TopoDS import TopoDS, TopoDS_Edge
 
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.loading import load_model
@@ -70,7 +70,7 @@ def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Cur
     for number, curve in enumerate(loose, start=1):
         if BRep_Tool.Degenerated_s(curve.edge):
             continue
-        edge = shifted(curve.edge, tuple(shift.tolist())) if shift.any() else curve.edge
+        edge = TopoDS.Edge_s(shifted(curve.edge, tuple(shift.tolist()))) if shift.any() else curve.edge
         try:
             adaptor = BRepAdaptor_Curve(edge)
             places = np.linspace(adaptor.FirstParameter(), adaptor.LastParameter(), POINTS)

@@ -12,7 +12,7 @@ from cadpanel.brep.model import Label, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.test_network import quads, write_mesh
+from tests.brep.test_network import across, quads, write_mesh
 from tests.model_files import STRIP, Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_face
 
@@ -48,6 +48,15 @@ def test_mesh_beside_a_model_far_away_is_moved_with_it(tmp_path):
     mesh = write_mesh(tmp_path / "mesh.obj", corners + FAR, faces)
     path = write_shape(tmp_path / "far.brep", moved(kernel_face(STRIP, poles=40), FAR))
     assert len(read_raw_panels(path, how(mesh=mesh)).panels) == 12
+
+
+@pytest.mark.parametrize("way", ["network", "spine"])
+def test_curves_in_a_file_beside_a_model_far_away_are_moved_with_it(tmp_path, way):
+    path = write_shape(tmp_path / "far.brep", moved(kernel_face(STRIP, poles=40), FAR))
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(STRIP.length, 0.0, 0.0)).Edge()
+    curves = write_shape(tmp_path / "curves.brep", moved(across(0.4) if way == "network" else line, FAR))
+    stations = {"stations": (2000.0,)} if way == "spine" else {}
+    assert len(read_raw_panels(path, how(**{way: curves}, **stations)).panels) == 2
 
 
 def test_inch_file_is_read_in_millimetres_whatever_the_format(tmp_path):

@@ -52,7 +52,7 @@ def test_mesh_beside_a_model_far_away_is_moved_with_it(tmp_path):
 
 @pytest.mark.parametrize("way", ["network", "spine"])
 def test_curves_in_a_file_beside_a_model_far_away_are_moved_with_it(tmp_path, way):
-    path = write_shape(tmp_path / "far.brep", moved(kernel_face(STRIP, poles=40), FAR))
+    path = write_shape(tmp_path / "far.brep", moved(compound_of(strip_faces()), FAR))
     line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(STRIP.length, 0.0, 0.0)).Edge()
     curves = write_shape(tmp_path / "curves.brep", moved(across(0.4) if way == "network" else line, FAR))
     stations = {"stations": (2000.0,)} if way == "spine" else {}

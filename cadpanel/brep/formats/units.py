@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.BRepLib import BRepLib
 from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopoDS import TopoDS_Shape
 
@@ -29,4 +30,7 @@ def shifted(shape: TopoDS_Shape, by: tuple[float, float, float]) -> TopoDS_Shape
     """A shape moved, its geometry and not only its placement: what the kernel computes with becomes small."""
     translation = gp_Trsf()
     translation.SetTranslation(gp_Vec(*by))
-    return BRepBuilderAPI_Transform(shape, translation, True).Shape()
+    moved = BRepBuilderAPI_Transform(shape, translation, True).Shape()
+    # Far from the origin, ends and edges lie apart by more than their tolerance: a double holds no more digits there.
+    BRepLib.UpdateTolerances_s(moved, False)
+    return moved

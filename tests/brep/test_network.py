@@ -181,6 +181,48 @@ def test_mesh_makes_one_panel_a_face(folder, ending):
     assert_covers(found.panels, [face])
 
 
+def off_text(header, after_corner="", after_faces=""):
+    """The mesh of 3 by 2 faces over a plane of 9 by 4 m, 12 corners."""
+    corners = [f"{3000 * i} {2000 * j} 0{after_corner}" for i in range(4) for j in range(3)]
+    faces = [f"4 {k} {k + 3} {k + 4} {k + 1}" for i in range(3) for k in (3 * i, 3 * i + 1)]
+    return "\n".join([header, *corners, *faces, after_faces])
+
+
+def obj_text():
+    corners = [f"v {3000 * i} {2000 * j} 0" for i in range(4) for j in range(3)]
+    faces = [f"f {k} {k + 3} {k + 4} {k + 1}" for i in range(3) for k in (3 * i + 1, 3 * i + 2)]
+    return "\n".join([*corners, *faces, ""])
+
+
+def panels_of_plane(folder, text, **how):
+    """A plane of 9 by 4 m cut by a mesh."""
+    skin = write_shape(folder / "plane.brep", BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 9000.0, 0.0, 4000.0).Face())
+    (folder / "mesh.obj").write_bytes(text.encode() if isinstance(text, str) else text)
+    return read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=folder / "mesh.obj", **how))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        off_text("OFF 12 6 0"),
+        off_text("off\n12 6 0"),
+        off_text("# a comment\nOFF # another\n# and one\n12 6 0"),
+        off_text("OFF\n12 6 0", after_corner=" 255 0 0 255"),
+        off_text("COFF\n12 6 0", after_corner=" 255 0 0 255"),
+        off_text("STCNOFF\n12 6 0", after_corner=" 0 0 1 255 0 0 255 0.5 0.5"),
+        off_text("OFF\n12 6 0", after_faces="2 0 1\n2 1 2\n"),
+        "\ufeff" + off_text("OFF\n12 6 0"),
+        "\ufeff" + obj_text(),
+        "# C:\\panels\\\n" + obj_text(),
+        obj_text().replace("f 1 4", "f 1 \\\n4").replace("\n", "\r\n"),
+    ],
+    ids=["counts in header", "lower case", "comments", "colours", "COFF", "STCNOFF", "edges", "BOM off", "BOM obj"]
+    + ["comment with backslash", "CRLF after backslash"],
+)
+def test_mesh_is_read_as_other_programs_write_it(folder, text):
+    assert len(panels_of_plane(folder, text).panels) == 6
+
+
 def test_mesh_that_leaves_a_part_of_the_surface_out_is_refused(folder):
     skin = write_shape(folder / "skin.brep", kernel_face(STRIP, poles=40))
     corners, faces = quads(6, 4)
@@ -198,6 +240,10 @@ def test_mesh_that_leaves_a_part_of_the_surface_out_is_refused(folder):
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 7\n", "Face 1 of 'bad.obj' has fewer than three different corners"),
         ("v 0 0 0\nv 1 0 0\nv 0 1 nan\nf 1 2 3\n", "corners that are not numbers"),
         ("OFF\n9 1 0\n0 0 0\n", "breaks off before its last corner"),
+        ("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "breaks off before its last corner or face"),
+        ("OFF\n3\n", "does not say how many corners and faces it has"),
+        ("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a corner has fewer than three coordinates"),
+        ("v 0 0 0\nv 1 0 0\nf 0 1 2\nv 0 1 0\n", "Face 1 of 'bad.obj' has fewer than three different corners, or one"),
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\nf 1 2 3\n", "3 faces of 'bad.obj' share the edge"),
     ],
 )

@@ -18,6 +18,7 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.model import compound_of
 from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.errors import ReferenceFileError
 
@@ -75,10 +76,10 @@ def load_mesh(path: Path, origin: Array, millimetres: float) -> Mesh:
     Raises:
         ReferenceFileError: it is neither, is damaged, or its faces do not join.
     """
-    text = contents(path).decode("utf-8", errors="replace")
+    text = contents(path).decode("utf-8-sig", errors="replace")
     try:
-        corners, faces = _off(text) if text.lstrip().startswith("OFF") else _obj(text)
-    except (ValueError, IndexError) as error:
+        corners, faces = corners_and_faces(text)
+    except ValueError as error:
         raise ReferenceFileError(f"'{path.name}' is a damaged OBJ or OFF mesh ({error}): export it again.") from error
     if not faces:
         raise ReferenceFileError(f"'{path.name}' is no OBJ or OFF mesh with faces: export the panels' mesh as one.")
@@ -130,37 +131,3 @@ def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:
 
 def _edge(first: int, last: int) -> tuple[int, int]:
     return (min(first, last), max(first, last))
-
-
-def _obj(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
-    corners: list[list[float]] = []
-    faces: list[tuple[int, ...]] = []
-    for line in text.replace("\\\n", " ").splitlines():
-        words = line.split("#", 1)[0].split()
-        if words[:1] == ["v"]:
-            corners.append([float(word) for word in words[1:4]])
-        elif words[:1] == ["f"]:
-            numbers = [int(word.split("/", 1)[0]) for word in words[1:]]
-            faces.append(tuple(number - 1 if number > 0 else len(corners) + number for number in numbers))
-    if any(len(corner) != 3 for corner in corners):
-        raise ValueError("a corner has fewer than three coordinates")
-    return corners, faces
-
-
-def _off(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
-    words = [word for line in text.splitlines() for word in line.split("#", 1)[0].split()]
-    count, face_count = int(words[1]), int(words[2])
-    if count < 0 or face_count < 0 or 4 + 3 * count > len(words):
-        raise ValueError("it breaks off before its last corner")
-    numbers = [float(word) for word in words[4 : 4 + 3 * count]]
-    corners = [numbers[place : place + 3] for place in range(0, 3 * count, 3)]
-    faces = []
-    # Faces are lines, as they may end with a colour.
-    lines = [line.split("#", 1)[0].split() for line in text.splitlines()]
-    rows = [line for line in lines if line][-face_count:] if face_count else []
-    for row in rows:
-        size = int(row[0])
-        faces.append(tuple(int(word) for word in row[1 : 1 + size]))
-        if len(faces[-1]) != size:
-            raise ValueError("a face has fewer corners than it says")
-    return corners, faces

@@ -57,7 +57,10 @@ def load_curves(path: Path, origin: Array, millimetres: float | None) -> tuple[C
         raise ReferenceFileError(
             f"'{path.name}' holds no loose curves, only faces: export the lines between the panels as curves."
         )
-    return sampled(loose, path.name, -np.asarray(origin))
+    curves = sampled(loose, path.name, -np.asarray(origin))
+    if not curves:
+        raise ReferenceFileError(f"'{path.name}' holds only curves without length: draw them again.")
+    return curves
 
 
 def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +13,15 @@ from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
-from cadpanel.brep.subdivide.mesh import load_mesh, require_all_panels
+from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.brep.subdivide.stations import cut_stations
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
+
+DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
+"""What to do about a curve that does not cut."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,31 +95,31 @@ def _network(skin: _Skin) -> Cut:
             raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
     else:
         curves = load_curves(file, skin.origin, skin.settings.millimetres)
-    return _cut_by_curves(skin, curves, file.name)
+    return _cut_by_curves(skin, curves, file.name, DRAW_ON)
 
 
 def _mesh(skin: _Skin) -> Cut:
     file = skin.settings.mesh or skin.file
-    mesh = load_mesh(file, skin.origin, skin.settings.millimetres or 1.0)
-    cut = _cut_by_curves(skin, mesh.curves(), file.name)
+    mesh = load_mesh(file, skin.origin, skin.settings.millimetres or 1.0, skin.settings.seam_tolerance)
+    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER)
     require_all_panels(mesh, cut.panels, file.name, skin.model.source)
-    return cut
+    return replace(cut, notes=(*mesh.notes, *cut.notes))
 
 
-def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str) -> Cut:
-    """Cut every surface by the curves that lie over it, and refuse a curve that lies over none."""
+def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str, remedy: str) -> Cut:
+    """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
     tolerance = skin.settings.seam_tolerance
     landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
     stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:
         called = stray[0].called
         raise ReferenceFileError(
-            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': take "
-            "it out, or draw it on the surface."
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': "
+            f"{remedy}."
         )
     panels: list[CutPanel] = []
     for surface, landing in zip(skin.surfaces, landings, strict=True):
-        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, tolerance)
+        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, remedy, tolerance)
     farthest = max(landing.offset for landing in landings)
     notes = (f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it.",)
     return Cut(panels=tuple(panels), notes=notes if farthest > WORTH_A_NOTE else ())

@@ -20,6 +20,7 @@ from cadpanel.brep.model import compound_of
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.weld import welded
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
@@ -28,19 +29,40 @@ Array = NDArray[np.float64]
 # outline of the surface; what lies beyond is not projected.
 DRAWN_ON = 0.02
 FEWEST_CORNERS = 3
+GIVE_UNIT = "give the mesh's unit with --unit where that is not mm"
+LAY_OVER = f"lay the mesh over the surface, up to its outline all round, and {GIVE_UNIT}"
+"""What to do about a mesh whose edges do not cut the surface into its faces."""
 # Points along an edge that are brought onto the surface.
 POINTS = 33
 
 
+class _Edge(Curve):
+    """An edge between two faces, called by the corners at its ends."""
+
+    __slots__ = ()
+
+    @property
+    def called(self) -> str:
+        """How a message speaks of it."""
+        return f"the edge {self.name}"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh:
-    """Corners (n, 3) in the reference's coordinates, mm, and the corners of each face, in order round it."""
+    """A mesh.
+
+    Attributes:
+        corners: (n, 3) in the reference's coordinates, mm.
+        faces: the corners of each face, in order round it.
+        notes: what was done to it, one sentence each.
+    """
 
     corners: Array
     faces: tuple[tuple[int, ...], ...]
+    notes: tuple[str, ...] = ()
 
     def curves(self) -> tuple[Curve, ...]:
-        """The edges between two faces, in their order, as curves."""
+        """The edges between two faces, in their order, as curves; none where no faces meet."""
         uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
         on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
         found: list[Curve] = []
@@ -51,9 +73,9 @@ class Mesh:
             stop = last + way if edge[1] in on_border else last
             parts = np.linspace(0.0, 1.0, POINTS)[:, None]
             found.append(
-                Curve(
+                _Edge(
                     number=len(found) + 1,
-                    name=f"edge {edge[0] + 1} - {edge[1] + 1}",
+                    name=f"from corner {edge[0] + 1} to {edge[1] + 1}",
                     edge=BRepBuilderAPI_MakeEdge(kernel.point(start), kernel.point(stop)).Edge(),
                     points=start + parts * (stop - start),
                 )
@@ -65,13 +87,14 @@ class Mesh:
         return np.array([self.corners[list(face)].mean(axis=0) for face in self.faces])
 
 
-def load_mesh(path: Path, origin: Array, millimetres: float) -> Mesh:
+def load_mesh(path: Path, origin: Array, millimetres: float, tolerance: float) -> Mesh:
     """Read an OBJ or OFF file.
 
     Args:
         path: the file.
         origin: (3,) what was taken off the reference's coordinates, mm.
         millimetres: how many the mesh's unit has.
+        tolerance: corners this close are the same, mm.
 
     Raises:
         ReferenceFileError: it is neither, is damaged, or its faces do not join.
@@ -84,8 +107,15 @@ def load_mesh(path: Path, origin: Array, millimetres: float) -> Mesh:
     if not faces:
         raise ReferenceFileError(f"'{path.name}' is no OBJ or OFF mesh with faces: export the panels' mesh as one.")
     points = millimetres * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
-    _check(path.name, points, faces)
-    return Mesh(corners=points, faces=tuple(faces))
+    if not np.isfinite(points).all():
+        raise ReferenceFileError(f"'{path.name}' has corners that are not numbers: export the mesh again.")
+    _check_corners(path.name, faces, len(points), "has fewer than three different corners, or one that is not there")
+    shared, joined = welded(points, faces, tolerance)
+    fault = f"has fewer than three corners, or one twice, as those within {tolerance:g} mm of each other are the same"
+    _check_corners(path.name, shared, len(points), fault)
+    _check_edges(path.name, shared)
+    note = f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as the same."
+    return Mesh(corners=points, faces=shared, notes=(note,) if joined else ())
 
 
 def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str, source: str) -> None:
@@ -96,8 +126,8 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
     """
     if len(panels) != len(mesh.faces):
         raise ReferenceFileError(
-            f"The mesh '{mesh_source}' has {len(mesh.faces)} faces but cuts '{source}' into {len(panels)} panels: it "
-            "must reach the outline of the surface all round."
+            f"The mesh '{mesh_source}' has {len(mesh.faces)} faces, but the edges between them cut '{source}' into "
+            f"{len(panels)} panels: {LAY_OVER}."
         )
     samples = [np.concatenate([face.points for face in sample_faces(compound_of(panel.faces))]) for panel in panels]
     _, nearest = cKDTree(mesh.middles()).query(np.array([points.mean(axis=0) for points in samples]))
@@ -105,18 +135,17 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
     if alone.max() > 1:
         raise ReferenceFileError(
             f"Face {int(alone.argmax()) + 1} of the mesh '{mesh_source}' lies over {int(alone.max())} panels of "
-            f"'{source}', and another one over none: lay the mesh over the surface."
+            f"'{source}', and another one over none: {LAY_OVER}."
         )
 
 
-def _check(name: str, corners: Array, faces: Sequence[tuple[int, ...]]) -> None:
-    if not np.isfinite(corners).all():
-        raise ReferenceFileError(f"'{name}' has corners that are not numbers: export the mesh again.")
+def _check_corners(name: str, faces: Sequence[tuple[int, ...]], count: int, fault: str) -> None:
     for place, face in enumerate(faces, start=1):
-        if len(face) < FEWEST_CORNERS or len(set(face)) < len(face) or not all(0 <= c < len(corners) for c in face):
-            raise ReferenceFileError(
-                f"Face {place} of '{name}' has fewer than three different corners, or one that is not there: repair it."
-            )
+        if len(face) < FEWEST_CORNERS or len(set(face)) < len(face) or not all(0 <= c < count for c in face):
+            raise ReferenceFileError(f"Face {place} of '{name}' {fault}: repair it, or {GIVE_UNIT}.")
+
+
+def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
     uses = Counter(_edge(*pair) for face in faces for pair in _round(face))
     if max(uses.values()) > 2:
         (first, last), count = max(uses.items(), key=lambda item: item[1])

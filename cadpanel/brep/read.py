@@ -29,7 +29,7 @@ from cadpanel.brep.subdivide.cut import cut_surfaces
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel, Reference
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, file_named
 
 # Panels sampled together: enough to share the overhead, few enough to take little memory.
 PANELS_AT_ONCE = 128
@@ -58,9 +58,9 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
     Raises:
         ReferenceFileError: the file cannot be read, does not hold panels, or cannot be cut into them.
         PanelError: one of the panels is none.
-        SettingsError: a setting does not fit the file.
+        SettingsError: the path is no name of a file, or a setting does not fit the file.
     """
-    path, how = Path(path), settings or ReferenceSettings()
+    path, how = file_named(path, "reference"), settings or ReferenceSettings()
     raw = read_raw_panels(path, how)
     reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance)
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
@@ -76,7 +76,7 @@ def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None)
         ReferenceFileError: the file cannot be read, holds no faces, or cannot be cut as asked.
         PanelError: a product is a solid, holds no face, or holds one that cannot be sampled.
     """
-    path, how = Path(path), settings or ReferenceSettings()
+    path, how = file_named(path, "reference"), settings or ReferenceSettings()
     if how.way is not None:
         return _cut_panels(path, how)
     if how.faces is None and how.unit is None and checked_format_of(path) is STEP:

@@ -61,12 +61,13 @@ class ReferenceSettings:
         """
         if not _is_positive(self.seam_tolerance):
             raise SettingsError(f"The seam tolerance must be a positive length in mm, not {self.seam_tolerance!r}.")
-        if self.unit is not None and self.unit not in MILLIMETRES:
+        if self.unit is not None and str(self.unit) not in MILLIMETRES:
             raise SettingsError(f"there is no unit '{self.unit}'; choose one of: {', '.join(MILLIMETRES)}")
         if self.by not in get_args(By):
             raise SettingsError(f"a grid is cut by length or by parameter, not by {self.by!r}")
         for name in ("spine", "network", "mesh"):
-            object.__setattr__(self, name, _path(name, getattr(self, name)))
+            given = getattr(self, name)
+            object.__setattr__(self, name, None if given is None else file_named(given, name))
         object.__setattr__(self, "faces", _words(self.faces))
         asked = [way for way in WAYS if getattr(self, way) is not None]
         if len(asked) > 1:
@@ -96,6 +97,24 @@ class ReferenceSettings:
         return None if self.unit is None else MILLIMETRES[self.unit]
 
 
+def file_named(value: object, what: str) -> Path:
+    """The file that a name stands for.
+
+    Args:
+        value: the name, a string or a path.
+        what: the file's part in the reading, for messages ("network").
+
+    Raises:
+        SettingsError: it is nothing that the kernel could open.
+    """
+    name = os.fspath(value) if isinstance(value, str | os.PathLike) else value
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise SettingsError(f"the {what} must be the name of a file, not {value!r}")
+    if name.encode(errors="ignore").decode() != name:
+        raise SettingsError(f"the name of the {what}, {name!r}, is not UTF-8: rename the file")
+    return Path(name)
+
+
 def _is_switch(value: object) -> bool:
     """True and False count as numbers in Python, but nobody means them so."""
     return isinstance(value, bool)
@@ -108,14 +127,6 @@ def _is_positive(value: object) -> bool:
 def _require_count(what: str, value: object, least: int) -> None:
     if _is_switch(value) or not isinstance(value, Integral) or not least <= int(value) <= MOST_PANELS:
         raise SettingsError(f"the {what} must be a whole number from {least} to {MOST_PANELS}, not {value!r}")
-
-
-def _path(name: str, value: object) -> Path | None:
-    if value is None:
-        return None
-    if not isinstance(value, str | os.PathLike) or not str(value):
-        raise SettingsError(f"the {name} must be the name of a file, not {value!r}")
-    return Path(value)
 
 
 def _words(value: object) -> tuple[str, ...] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -89,7 +90,7 @@ def _stations(skin: _Skin) -> Cut:
 
 def _network(skin: _Skin) -> Cut:
     file = skin.settings.network or skin.file
-    if file.exists() and file.resolve() == skin.file.resolve():
+    if os.path.realpath(file) == os.path.realpath(skin.file):
         curves = sampled(skin.model.curves(), file.name, np.zeros(3))
         if not curves:
             raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")

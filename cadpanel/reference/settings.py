@@ -30,7 +30,8 @@ class ReferenceSettings:
         seam_tolerance: how far panels that meet may lie apart in the file, mm.
         unit: of a file that has none (every .brep): "mm", "cm", "m", "in", "ft" and so on.
         faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
-            or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for anything.
+            or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for
+            anything, and a name that is written so in the file counts before it.
         divide: cut each strip into so many panels of equal length.
         lip: with `divide`, keep only a band of this width about the strip's lip, measured along the surface, mm.
         grid: cut each surface into so many by so many panels along its two parameters.

@@ -151,6 +151,17 @@ def test_sheared_block_of_a_polysurface_is_sheared(tmp_path):
     assert_same_surface(face.face, surface)
 
 
+@pytest.mark.parametrize(("entry", "value"), [("M22", 0.0), ("M33", 0.0), ("M03", float("nan"))])
+def test_block_that_rhino_cannot_place_is_refused(tmp_path, entry, value):
+    arc = rhino.Arc(rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 500.0), 1.5)
+    extrusion = rhino.Extrusion.Create(rhino.NurbsCurve.CreateFromArc(arc), 3000.0, False)
+    transform = rhino.Transform(1.0)
+    setattr(transform, entry, value)
+    path = written(tmp_path / "flattened.3dm", placed_once(extrusion, transform))
+    with pytest.raises(ReferenceFileError, match=r"'flattened.3dm' holds .* cannot be placed as its block says"):
+        load_model(path)
+
+
 def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_path):
     file = file_in()
     for name, color, visible in (("Skin", (10, 20, 30, 255), True), ("Off", (0, 0, 0, 255), False)):

@@ -49,9 +49,10 @@ Transform = Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Placed:
-    """An object's geometry where it stands, and what the file says of it."""
+    """An object's geometry where it stands, and what the file says of it; whether Rhino could put it there."""
 
     geometry: RhinoObject
+    stands: bool
     label: Label
     place: int
 
@@ -67,6 +68,8 @@ def _read(path: Path, millimetres: float | None) -> Model:
     for placed in _objects(path.name, file, left_out):
         try:
             shape = _shape(rhino, placed.geometry)
+            if shape is not None and not placed.stands:
+                raise ConversionError("it cannot be placed as its block says, flattened or with a number that is none")
         except (ConversionError, Standard_Failure) as error:
             raise ReferenceFileError(
                 f"'{path.name}' holds an object that cannot be read (number {placed.place}"
@@ -143,9 +146,9 @@ def _expand(
     if type(geometry).__name__ != "InstanceReference":
         if transforms:
             geometry = geometry.Duplicate()
-            for transform in reversed(transforms):
-                geometry.Transform(transform)
-        yield _Placed(geometry=geometry, label=label, place=place)
+        # Of a perspective Rhino makes nothing of use, and says so for some objects only.
+        stands = all(transform.IsAffine and geometry.Transform(transform) for transform in reversed(transforms))
+        yield _Placed(geometry=geometry, stands=stands, label=label, place=place)
         return
     definition = file.InstanceDefinitions.FindId(geometry.ParentIdefId)
     if definition is None:

@@ -118,13 +118,13 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
 
 def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:
     """The chosen faces of a file, cut into panels."""
-    model = load_model(path, settings.millimetres)
+    model = load_model(path, settings.millimetres, beside_unitless=settings.beside(path) is not None)
     skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
     cut = cut_surfaces(model, surfaces, settings, path)
     shapes = [NamedShape(panel.name, "", compound_of(panel.faces)) for panel in cut.panels]
-    notes = (*model.notes, *mended, *gaps, *cut.notes)
-    return RawReference(panels=_sampled(shapes, model.source), notes=notes)
+    notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # the reference may be read as a spine, too
+    return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
 
 
 def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...]:

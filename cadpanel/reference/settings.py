@@ -28,7 +28,7 @@ class ReferenceSettings:
 
     Attributes:
         seam_tolerance: how far panels that meet may lie apart in the file, mm.
-        unit: of a file that has none (every .brep): "mm", "cm", "m", "in", "ft" and so on.
+        unit: of every file that has none (.brep, meshes): "mm", "cm", "m", "in", "ft" and so on.
         faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
             or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for
             anything, and a name that is written so in the file counts before it.
@@ -91,6 +91,11 @@ class ReferenceSettings:
     def way(self) -> str | None:
         """Which way the surface is to be cut, None for not at all."""
         return next((way for way in WAYS if getattr(self, way) is not None), None)
+
+    def beside(self, reference: Path) -> Path | None:
+        """The file that is read beside a reference to cut it; None where there is none, or it is the reference."""
+        file = self.spine or self.network or self.mesh
+        return None if file is None or os.path.realpath(file) == os.path.realpath(reference) else file
 
     @property
     def millimetres(self) -> float | None:

@@ -232,7 +232,7 @@ def test_mesh_whose_faces_have_corners_of_their_own_is_welded_with_a_note(folder
     rows += [f"f {k} {k + 1} {k + 2} {k + 3}" for k in range(1, len(corners), 4)]
     found = panels_of_plane(folder, "\n".join(rows))
     assert len(found.panels) == 6
-    assert "12 corners of 'mesh.obj' lie within 1 mm of another one and count as the same." in found.notes
+    assert "12 corners of 'mesh.obj' lie within 1 mm of another one and count as one." in found.notes
     with pytest.raises(ReferenceFileError, match=r"has 6 faces, but the edges between them cut 'plane.brep' into"):
         panels_of_plane(folder, "\n".join(rows), seam_tolerance=0.1)
 

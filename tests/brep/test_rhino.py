@@ -62,16 +62,22 @@ def test_nurbs_surface_is_the_same_in_every_point(tmp_path, rational):
 
 
 @pytest.mark.parametrize(
-    ("unit", "factor"), [("Millimeters", 1.0), ("Meters", 1000.0), ("Inches", 25.4), ("Feet", 304.8)]
+    ("unit", "word", "factor"),
+    [
+        ("Millimeters", "millimetre", 1.0),
+        ("Meters", "metre", 1000.0),
+        ("Inches", "inch", 25.4),
+        ("Feet", "foot", 304.8),
+    ],
 )
-def test_model_units_become_millimetres(tmp_path, unit, factor):
+def test_model_units_become_millimetres(tmp_path, unit, word, factor):
     file, surface = file_in(unit), bent_surface(length=9.0)
     file.Objects.AddSurface(surface)
     path = written(tmp_path / "units.3dm", file)
     model = load_model(path)
-    assert model.unit == unit.lower()
+    assert model.unit == word
     assert_same_surface(model.faces()[0].face, surface, factor)
-    with pytest.raises(ReferenceFileError, match=r"says itself that its unit is the"):
+    with pytest.raises(ReferenceFileError, match=rf"says itself that its unit is the {word}:"):
         load_model(path, 10.0)
 
 

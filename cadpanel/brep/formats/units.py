@@ -7,14 +7,10 @@ from OCP.BRepLib import BRepLib
 from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.errors import ReferenceFileError
 
-
-def refuse_unit(name: str, own: str) -> ReferenceFileError:
-    """What to say where the user gives a unit and the file has one of its own."""
-    return ReferenceFileError(
-        f"'{name}' says itself that its unit is the {own}: leave the unit out, or correct it in the export."
-    )
+def no_unit(name: str, kind: str) -> str:
+    """What the report says of a file in a format without units where the user gives none."""
+    return f"'{name}' has no unit, as no {kind} has; it is read as millimetres."
 
 
 def scaled(shape: TopoDS_Shape, factor: float) -> TopoDS_Shape:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,7 @@ from cadpanel.brep.subdivide.lengths import cut_lengths
 from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
 from cadpanel.brep.subdivide.panel import CutPanel
-from cadpanel.brep.subdivide.stations import cut_stations
+from cadpanel.brep.subdivide.stations import cut_stations, spine_of
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -41,10 +40,6 @@ class _Skin:
     surfaces: Sequence[Surface]
     settings: ReferenceSettings
     file: Path
-
-    @property
-    def origin(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return np.array(self.model.origin, dtype=np.float64)
 
 
 def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, file: Path) -> Cut:
@@ -81,33 +76,35 @@ def _grid(skin: _Skin) -> Cut:
 
 def _stations(skin: _Skin) -> Cut:
     how = skin.settings
-    cut = [
-        cut_stations(surface, how.stations or (), how.spine, skin.model.source, skin.origin, how.millimetres)
-        for surface in skin.surfaces
-    ]
-    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+    found = None if how.spine is None else load_curves(how.spine, skin.model, how.millimetres)
+    spine = None if found is None else spine_of(found)
+    cut = [cut_stations(surface, how.stations or (), spine, skin.model.source) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=found.notes if found else ())
 
 
 def _network(skin: _Skin) -> Cut:
     file = skin.settings.network or skin.file
-    if os.path.realpath(file) == os.path.realpath(skin.file):
+    if skin.settings.beside(skin.file) is None:
         curves = sampled(skin.model.curves(), file.name, np.zeros(3))
         if not curves:
             raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
-    else:
-        curves = load_curves(file, skin.origin, skin.settings.millimetres)
-    return _cut_by_curves(skin, curves, file.name, DRAW_ON)
+        return _cut_by_curves(skin, curves, file.name, DRAW_ON)
+    found = load_curves(file, skin.model, skin.settings.millimetres)
+    return _cut_by_curves(skin, found.curves, file.name, DRAW_ON, found.notes)
 
 
 def _mesh(skin: _Skin) -> Cut:
     file = skin.settings.mesh or skin.file
-    mesh = load_mesh(file, skin.origin, skin.settings.millimetres or 1.0, skin.settings.seam_tolerance)
-    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER)
+    origin = np.array(skin.model.origin)
+    mesh = load_mesh(file, origin, skin.settings.millimetres, skin.settings.seam_tolerance)
+    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER, mesh.notes)
     require_all_panels(mesh, cut.panels, file.name, skin.model.source)
-    return replace(cut, notes=(*mesh.notes, *cut.notes))
+    return cut
 
 
-def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str, remedy: str) -> Cut:
+def _cut_by_curves(
+    skin: _Skin, curves: Sequence[Curve], curve_source: str, remedy: str, notes: tuple[str, ...] = ()
+) -> Cut:
     """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
     tolerance = skin.settings.seam_tolerance
     landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
@@ -122,8 +119,10 @@ def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str, reme
     for surface, landing in zip(skin.surfaces, landings, strict=True):
         panels += cut_network(surface, curves, landing, skin.model.source, curve_source, remedy, tolerance)
     farthest = max(landing.offset for landing in landings)
-    notes = (f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it.",)
-    return Cut(panels=tuple(panels), notes=notes if farthest > WORTH_A_NOTE else ())
+    if farthest > WORTH_A_NOTE:
+        off = f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it."
+        notes = (*notes, off)
+    return Cut(panels=tuple(panels), notes=notes)
 
 
 WAYS: dict[str, Callable[[_Skin], Cut]] = {

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from cadpanel.brep import kernel
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
+from cadpanel.brep.formats.units import no_unit
 from cadpanel.brep.model import compound_of
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
@@ -87,13 +88,13 @@ class Mesh:
         return np.array([self.corners[list(face)].mean(axis=0) for face in self.faces])
 
 
-def load_mesh(path: Path, origin: Array, millimetres: float, tolerance: float) -> Mesh:
+def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: float) -> Mesh:
     """Read an OBJ or OFF file.
 
     Args:
         path: the file.
         origin: (3,) what was taken off the reference's coordinates, mm.
-        millimetres: how many the mesh's unit has.
+        millimetres: how many the mesh's unit has; None where the user gives none.
         tolerance: corners this close are the same, mm.
 
     Raises:
@@ -106,7 +107,7 @@ def load_mesh(path: Path, origin: Array, millimetres: float, tolerance: float) -
         raise ReferenceFileError(f"'{path.name}' is a damaged OBJ or OFF mesh ({error}): export it again.") from error
     if not faces:
         raise ReferenceFileError(f"'{path.name}' is no OBJ or OFF mesh with faces: export the panels' mesh as one.")
-    points = millimetres * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
+    points = (millimetres or 1.0) * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
     if not np.isfinite(points).all():
         raise ReferenceFileError(f"'{path.name}' has corners that are not numbers: export the mesh again.")
     _check_corners(path.name, faces, len(points), "has fewer than three different corners, or one that is not there")
@@ -114,8 +115,10 @@ def load_mesh(path: Path, origin: Array, millimetres: float, tolerance: float) -
     fault = f"has fewer than three corners, or one twice, as those within {tolerance:g} mm of each other are the same"
     _check_corners(path.name, shared, len(points), fault)
     _check_edges(path.name, shared)
-    note = f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as the same."
-    return Mesh(corners=points, faces=shared, notes=(note,) if joined else ())
+    notes = [] if millimetres else [no_unit(path.name, "mesh")]
+    if joined:
+        notes.append(f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as one.")
+    return Mesh(corners=points, faces=shared, notes=tuple(notes))
 
 
 def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str, source: str) -> None:

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.Standard import Standard_Failure
-from OCP.TopoDS import TopoDS_Edge
+from OCP.TopoDS import TopoDS, TopoDS_Edge
 
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import ModelCurve
+from cadpanel.brep.model import Model, ModelCurve
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
@@ -40,24 +40,36 @@ class Curve:
         return f"curve {self.number}" + (f" ('{self.name}')" if self.name else "")
 
 
-def load_curves(path: Path, origin: Array, millimetres: float | None) -> tuple[Curve, ...]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveFile:
+    """The loose curves of a file beside a reference, its name, and what should be known of how it was read."""
+
+    source: str
+    curves: tuple[Curve, ...]
+    notes: tuple[str, ...]
+
+
+def load_curves(path: Path, reference: Model, millimetres: float | None) -> CurveFile:
     """The loose curves of a file, in the coordinates of a reference.
 
     Args:
         path: a file of any format.
-        origin: (3,) what was taken off the reference's coordinates, mm.
-        millimetres: how many the unit of a file without one has.
+        reference: beside which they lie.
+        millimetres: how many the unit has that the user gives, for files without one of their own.
 
     Raises:
         ReferenceFileError: the file cannot be read, or holds no loose curves.
     """
-    model = load_model(path, millimetres, near_origin=False)
+    model = load_model(path, millimetres, near_origin=False, beside_unitless=not reference.own_unit)
     loose = model.curves()
     if not loose:
         raise ReferenceFileError(
             f"'{path.name}' holds no loose curves, only faces: export the lines between the panels as curves."
         )
-    return sampled(loose, path.name, -np.asarray(origin))
+    curves = sampled(loose, path.name, -np.array(reference.origin))
+    if not curves:
+        raise ReferenceFileError(f"'{path.name}' holds only curves without length: draw them again.")
+    return CurveFile(source=model.source, curves=curves, notes=model.notes)
 
 
 def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:
@@ -70,7 +82,7 @@ def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Cur
     for number, curve in enumerate(loose, start=1):
         if BRep_Tool.Degenerated_s(curve.edge):
             continue
-        edge = shifted(curve.edge, tuple(shift.tolist())) if shift.any() else curve.edge
+        edge = TopoDS.Edge_s(shifted(curve.edge, tuple(shift.tolist()))) if shift.any() else curve.edge
         try:
             adaptor = BRepAdaptor_Curve(edge)
             places = np.linspace(adaptor.FirstParameter(), adaptor.LastParameter(), POINTS)

@@ -7,6 +7,7 @@ looked for here.
 from __future__ import annotations
 
 import re
+import stat
 from pathlib import Path
 
 from cadpanel.errors import ReferenceFileError
@@ -38,17 +39,24 @@ def contents(path: Path, most: int = -1) -> bytes:
     """The bytes of a file, or its first ones.
 
     Raises:
-        ReferenceFileError: there is no such file, it cannot be read, or it is empty.
+        ReferenceFileError: there is no such file, it is a folder or pipe, cannot be read, or is empty.
     """
-    if path.is_dir():
-        raise ReferenceFileError(f"'{path}' is a folder: give the file of the reference in it.")
     try:
+        kind = path.stat().st_mode
+        if stat.S_ISDIR(kind):
+            raise ReferenceFileError(f"'{path}' is a folder: give the file of the reference in it.")
+        if not stat.S_ISREG(kind):  # reading a pipe might never end
+            raise ReferenceFileError(
+                f"'{path}' is a pipe or a device: save what comes out of it to a file, and give that."
+            )
         with path.open("rb") as file:
             text = file.read(most)
     except FileNotFoundError:
         raise ReferenceFileError(f"'{path}' does not exist: check the name and the folder.") from None
     except OSError as error:
-        raise ReferenceFileError(f"'{path}' cannot be read ({error.strerror}): check its permissions.") from error
+        raise ReferenceFileError(
+            f"'{path}' cannot be read ({error.strerror}): check its name and permissions."
+        ) from error
     if not text.strip():
         raise ReferenceFileError(f"'{path.name}' is empty: export the reference again.")
     return text

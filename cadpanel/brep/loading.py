@@ -25,19 +25,28 @@ LARGEST_COORDINATE = 1e12
 """Beyond it, a double keeps less than 0.1 mm."""
 
 
-def load_model(path: Path, millimetres: float | None = None, *, near_origin: bool = True) -> Model:
+def load_model(
+    path: Path, millimetres: float | None = None, *, near_origin: bool = True, beside_unitless: bool = False
+) -> Model:
     """Read a file of any format.
 
     Args:
         path: the file.
-        millimetres: how many its unit has, where it has none of its own.
+        millimetres: how many the unit has that the user gives, for a file without one of its own.
         near_origin: move it near the origin where it lies far away.
+        beside_unitless: the user may give the unit for another file; then this one may have its own.
 
     Raises:
-        ReferenceFileError: there is no such file, it is damaged, or it holds no shapes.
+        ReferenceFileError: there is no such file, it is damaged, it holds no shapes, or it has a unit of its own where
+            one is given.
     """
     checked_format_of(path)
     model = cast(PackedModel, read_guarded("model", path, millimetres)).unpack()
+    if millimetres is not None and model.own_unit and not beside_unitless:
+        raise ReferenceFileError(
+            f"'{path.name}' says itself that its unit is the {model.unit}: leave the unit out, or correct it in the "
+            "export."
+        )
     if not model.parts:
         raise ReferenceFileError(
             f"'{path.name}' holds neither faces nor curves: export the faces of the skin and try again."

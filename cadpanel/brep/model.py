@@ -81,7 +81,8 @@ class Model:
     Attributes:
         source: the file's name.
         format: what kind of file it is.
-        unit: the file's own unit of length, as a word.
+        unit: the unit of length in which it was read, as a word.
+        own_unit: whether the file itself says so.
         parts: in file order, mm.
         notes: what was done to it or should be known of it, one sentence each.
         origin: what was taken off all coordinates of the file, mm.
@@ -90,6 +91,7 @@ class Model:
     source: str
     format: str
     unit: str
+    own_unit: bool = True
     parts: tuple[Part, ...]
     notes: tuple[str, ...] = ()
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -74,6 +74,8 @@ def land(surface: Surface, curves: Sequence[Array], reach: float, tolerance: flo
         reach: how far off the surface a curve may lie, mm; what is farther away does not pass over it.
         tolerance: a curve that ends this close to the border of a face, or runs along it, reaches it, mm.
     """
+    if not curves:
+        return Landing(edges=(), offset=0.0)
     edges: list[list[TopoDS_Edge]] = [[] for _ in curves]
     offset = 0.0
     sizes = [len(curve) for curve in curves]

@@ -29,7 +29,7 @@ from cadpanel.brep.subdivide.cut import cut_surfaces
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel, Reference
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, file_named
 
 # Panels sampled together: enough to share the overhead, few enough to take little memory.
 PANELS_AT_ONCE = 128
@@ -58,9 +58,9 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
     Raises:
         ReferenceFileError: the file cannot be read, does not hold panels, or cannot be cut into them.
         PanelError: one of the panels is none.
-        SettingsError: a setting does not fit the file.
+        SettingsError: the path is no name of a file, or a setting does not fit the file.
     """
-    path, how = Path(path), settings or ReferenceSettings()
+    path, how = file_named(path, "reference"), settings or ReferenceSettings()
     raw = read_raw_panels(path, how)
     reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance)
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
@@ -76,7 +76,7 @@ def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None)
         ReferenceFileError: the file cannot be read, holds no faces, or cannot be cut as asked.
         PanelError: a product is a solid, holds no face, or holds one that cannot be sampled.
     """
-    path, how = Path(path), settings or ReferenceSettings()
+    path, how = file_named(path, "reference"), settings or ReferenceSettings()
     if how.way is not None:
         return _cut_panels(path, how)
     if how.faces is None and how.unit is None and checked_format_of(path) is STEP:
@@ -118,13 +118,13 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
 
 def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:
     """The chosen faces of a file, cut into panels."""
-    model = load_model(path, settings.millimetres)
+    model = load_model(path, settings.millimetres, beside_unitless=settings.beside(path) is not None)
     skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
     cut = cut_surfaces(model, surfaces, settings, path)
     shapes = [NamedShape(panel.name, "", compound_of(panel.faces)) for panel in cut.panels]
-    notes = (*model.notes, *mended, *gaps, *cut.notes)
-    return RawReference(panels=_sampled(shapes, model.source), notes=notes)
+    notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # the reference may be read as a spine, too
+    return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
 
 
 def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
+from glob import escape
 
 from cadpanel.brep.model import Label, Model, ModelFace
 from cadpanel.errors import ReferenceFileError
 
-NUMBERS = re.compile(r"(\d+)(?:\s*-\s*(\d+))?")
+# No file has a thousand million faces, and Python refuses to read numbers that are much longer.
+NUMBERS = re.compile(r"0*(\d{1,9})(?:\s*-\s*0*(\d{1,9}))?")
 # Words that a message lists of each kind at most.
 MOST_LISTED = 8
 
@@ -45,23 +47,28 @@ def select_faces(model: Model, chosen: Sequence[str] | None) -> tuple[ModelFace,
         return faces
     taken: set[int] = set()
     for word in chosen:
-        fitting = {face.number for face in faces if _fits(word, face)}
+        fitting = _chosen(word, faces)
         if not fitting:
             raise ReferenceFileError(f"'{model.source}' has no face '{word}': {_offers(faces)}.")
         taken |= fitting
     return tuple(face for face in faces if face.number in taken)
 
 
-def _fits(word: str, face: ModelFace) -> bool:
+def _chosen(word: str, faces: Sequence[ModelFace]) -> set[int]:
+    """The numbers of the faces that one word chooses, none where one of them is not there."""
     numbers = NUMBERS.fullmatch(word)
     if numbers is not None:
         first = int(numbers[1])
-        return first <= face.number <= int(numbers[2] or first)
+        last = int(numbers[2] or first)
+        return set(range(first, last + 1)) if first >= 1 and last <= len(faces) else set()
     key, equals, wanted = word.partition("=")
     if not equals or key not in _KEYS:
         key, wanted = "name", word
-    said = _KEYS[key](face.label)
-    return said != "" and fnmatchcase(said.casefold(), wanted.strip().casefold())
+    wanted = wanted.strip().lower() if key == "color" else wanted.strip()
+    said = {face.number: _KEYS[key](face.label) for face in faces}
+    alike = {number for number, text in said.items() if text and text == wanted}
+    pattern = escape(wanted).replace("[*]", "*")  # no other sign stands for anything
+    return alike or {number for number, text in said.items() if text and fnmatchcase(text, pattern)}
 
 
 def _offers(faces: Sequence[ModelFace]) -> str:

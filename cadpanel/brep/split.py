@@ -51,6 +51,8 @@ def split_faces(faces: Sequence[TopoDS_Face], tools: Sequence[TopoDS_Shape], wha
     Raises:
         ReferenceFileError: the kernel fails, or its pieces do not have the area of the whole.
     """
+    if not tools:  # the splitter fails without any
+        return Pieces(faces=tuple((face,) for face in faces), tools=())
     splitter = BRepAlgoAPI_Splitter()
     splitter.SetArguments(_listed(faces))
     splitter.SetTools(_listed(tools))

@@ -31,7 +31,7 @@ from cadpanel.brep.sections import sections_of
 from cadpanel.brep.select import select_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import norm
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, file_named
 
 # Faces that fold by more than this where they meet are different surfaces here, degrees: a lip is round.
 SMOOTH = 30.0
@@ -138,9 +138,10 @@ def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Surve
 
     Raises:
         ReferenceFileError: the file cannot be read, or holds neither faces nor curves.
+        SettingsError: the path is no name of a file.
     """
     how = settings or ReferenceSettings()
-    model = load_model(Path(path), how.millimetres)
+    model = load_model(file_named(path, "reference"), how.millimetres)
     skin, mended = _skin(model, how)
     surfaces, gaps = surfaces_of(skin, model.source, how.seam_tolerance, SMOOTH) if skin else ((), ())
     curves = sampled(model.curves(), model.source, np.zeros(3))

@@ -75,7 +75,7 @@ SeamTolerance = Annotated[
     float, typer.Option("--seam-tolerance", metavar="MM", help="How far panels that meet may lie apart in the file.")
 ]
 Unit = Annotated[
-    str | None, typer.Option("--unit", metavar="UNIT", help="Of a file that has none, like .brep: m, in ...")
+    str | None, typer.Option("--unit", metavar="UNIT", help="Of every file that has none (.brep, meshes): m, in ...")
 ]
 Faces = Annotated[
     str | None,

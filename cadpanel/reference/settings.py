@@ -28,9 +28,10 @@ class ReferenceSettings:
 
     Attributes:
         seam_tolerance: how far panels that meet may lie apart in the file, mm.
-        unit: of a file that has none (every .brep): "mm", "cm", "m", "in", "ft" and so on.
+        unit: of every file that has none (.brep, meshes): "mm", "cm", "m", "in", "ft" and so on.
         faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
-            or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for anything.
+            or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for
+            anything, and a name that is written so in the file counts before it.
         divide: cut each strip into so many panels of equal length.
         lip: with `divide`, keep only a band of this width about the strip's lip, measured along the surface, mm.
         grid: cut each surface into so many by so many panels along its two parameters.
@@ -61,12 +62,13 @@ class ReferenceSettings:
         """
         if not _is_positive(self.seam_tolerance):
             raise SettingsError(f"The seam tolerance must be a positive length in mm, not {self.seam_tolerance!r}.")
-        if self.unit is not None and self.unit not in MILLIMETRES:
+        if self.unit is not None and str(self.unit) not in MILLIMETRES:
             raise SettingsError(f"there is no unit '{self.unit}'; choose one of: {', '.join(MILLIMETRES)}")
         if self.by not in get_args(By):
             raise SettingsError(f"a grid is cut by length or by parameter, not by {self.by!r}")
         for name in ("spine", "network", "mesh"):
-            object.__setattr__(self, name, _path(name, getattr(self, name)))
+            given = getattr(self, name)
+            object.__setattr__(self, name, None if given is None else file_named(given, name))
         object.__setattr__(self, "faces", _words(self.faces))
         asked = [way for way in WAYS if getattr(self, way) is not None]
         if len(asked) > 1:
@@ -90,10 +92,33 @@ class ReferenceSettings:
         """Which way the surface is to be cut, None for not at all."""
         return next((way for way in WAYS if getattr(self, way) is not None), None)
 
+    def beside(self, reference: Path) -> Path | None:
+        """The file that is read beside a reference to cut it; None where there is none, or it is the reference."""
+        file = self.spine or self.network or self.mesh
+        return None if file is None or os.path.realpath(file) == os.path.realpath(reference) else file
+
     @property
     def millimetres(self) -> float | None:
         """How many mm the given unit has, None where none is given."""
         return None if self.unit is None else MILLIMETRES[self.unit]
+
+
+def file_named(value: object, what: str) -> Path:
+    """The file that a name stands for.
+
+    Args:
+        value: the name, a string or a path.
+        what: the file's part in the reading, for messages ("network").
+
+    Raises:
+        SettingsError: it is nothing that the kernel could open.
+    """
+    name = os.fspath(value) if isinstance(value, str | os.PathLike) else value
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise SettingsError(f"the {what} must be the name of a file, not {value!r}")
+    if name.encode(errors="ignore").decode() != name:
+        raise SettingsError(f"the name of the {what}, {name!r}, is not UTF-8: rename the file")
+    return Path(name)
 
 
 def _is_switch(value: object) -> bool:
@@ -108,14 +133,6 @@ def _is_positive(value: object) -> bool:
 def _require_count(what: str, value: object, least: int) -> None:
     if _is_switch(value) or not isinstance(value, Integral) or not least <= int(value) <= MOST_PANELS:
         raise SettingsError(f"the {what} must be a whole number from {least} to {MOST_PANELS}, not {value!r}")
-
-
-def _path(name: str, value: object) -> Path | None:
-    if value is None:
-        return None
-    if not isinstance(value, str | os.PathLike) or not str(value):
-        raise SettingsError(f"the {name} must be the name of a file, not {value!r}")
-    return Path(value)
 
 
 def _words(value: object) -> tuple[str, ...] | None:

@@ -15,7 +15,7 @@ from cadpanel.brep.model import Label, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.test_network import quads, write_mesh
+from tests.brep.test_network import across, quads, write_mesh
 from tests.model_files import STRIP, Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_face
 
@@ -29,8 +29,8 @@ def moved(shape, by):
     return BRepBuilderAPI_Transform(shape, shift, True).Shape()
 
 
-def how(**settings):
-    return ReferenceSettings(unit="mm", **settings)
+def how(unit="mm", **settings):
+    return ReferenceSettings(unit=unit, **settings)
 
 
 def test_map_grid_coordinates_give_the_same_panels_and_a_note(tmp_path):
@@ -51,6 +51,70 @@ def test_mesh_beside_a_model_far_away_is_moved_with_it(tmp_path):
     mesh = write_mesh(tmp_path / "mesh.obj", corners + FAR, faces)
     path = write_shape(tmp_path / "far.brep", moved(kernel_face(STRIP, poles=40), FAR))
     assert len(read_raw_panels(path, how(mesh=mesh)).panels) == 12
+
+
+@pytest.mark.parametrize("way", ["network", "spine"])
+def test_curves_in_a_file_beside_a_model_far_away_are_moved_with_it(tmp_path, way):
+    path = write_shape(tmp_path / "far.brep", moved(compound_of(strip_faces()), FAR))
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(STRIP.length, 0.0, 0.0)).Edge()
+    curves = write_shape(tmp_path / "curves.brep", moved(across(0.4) if way == "network" else line, FAR))
+    stations = {"stations": (2000.0,)} if way == "spine" else {}
+    assert len(read_raw_panels(path, how(**{way: curves}, **stations)).panels) == 2
+
+
+def in_metres(shape):
+    scaling = gp_Trsf()
+    scaling.SetScale(gp_Pnt(0.0, 0.0, 0.0), 1e-3)
+    return BRepBuilderAPI_Transform(shape, scaling, True).Shape()
+
+
+def write(path, shape):
+    """Write a shape drawn in mm: STEP says so, .brep is in metres and says nothing."""
+    if path.suffix == ".step":
+        return write_labelled(path, [(Label(name="skin"), shape, [])])
+    return write_shape(path, in_metres(shape))
+
+
+@pytest.mark.parametrize("names", [("skin.brep", "curves.step"), ("skin.step", "curves.brep"), ("a.brep", "b.brep")])
+@pytest.mark.parametrize("way", ["network", "spine"])
+def test_unit_counts_for_each_file_that_has_none(tmp_path, names, way):
+    skin = write(tmp_path / names[0], compound_of(strip_faces()))
+    line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(STRIP.length, 0.0, 0.0)).Edge()
+    curves = write(tmp_path / names[1], across(0.4) if way == "network" else line)
+    stations = {"stations": (2000.0,)} if way == "spine" else {}
+    found = read_raw_panels(skin, how(unit="m", **{way: curves}, **stations))
+    assert len(found.panels) == 2
+    assert not any("has no unit" in note for note in found.notes)
+
+
+def test_unit_counts_for_a_mesh_beside_a_file_that_has_its_own(tmp_path):
+    skin = write(tmp_path / "skin.step", kernel_face(STRIP, poles=40))
+    corners, faces = quads(6, 2)
+    mesh = write_mesh(tmp_path / "mesh.obj", 1e-3 * corners, faces)
+    assert len(read_raw_panels(skin, ReferenceSettings(unit="m", mesh=mesh)).panels) == 12
+
+
+@pytest.mark.parametrize("name", ["skin.step", "curves.step"])
+def test_unit_where_every_file_has_its_own_is_refused(tmp_path, name):
+    skin = write(tmp_path / "skin.step", compound_of([*strip_faces(), across(0.5)]))
+    write(tmp_path / "curves.step", across(0.4))
+    with pytest.raises(CadpanelError, match=rf"'{name}' says itself that its unit is the millimetre: leave the unit"):
+        read_raw_panels(skin, ReferenceSettings(unit="m", network=tmp_path / name))
+
+
+def test_second_file_without_a_unit_is_noted(tmp_path):
+    skin = write(tmp_path / "skin.step", kernel_face(STRIP, poles=40))
+    curves = write_shape(tmp_path / "curves.brep", across(0.4))
+    mesh = write_mesh(tmp_path / "mesh.obj", *quads(6, 2))
+    spine = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(STRIP.length, 0.0, 0.0)).Edge()
+    line = write_shape(tmp_path / "line.brep", spine)
+    for settings, said in (
+        (ReferenceSettings(network=curves), "'curves.brep' has no unit, as no .brep has"),
+        (ReferenceSettings(spine=line, stations=(2000.0,)), "'line.brep' has no unit, as no .brep has"),
+        (ReferenceSettings(mesh=mesh), "'mesh.obj' has no unit, as no mesh has"),
+    ):
+        notes = read_reference(skin, settings).notes
+        assert [note for note in notes if "has no unit" in note] == [f"{said}; it is read as millimetres."]
 
 
 def test_inch_file_is_read_in_millimetres_whatever_the_format(tmp_path):

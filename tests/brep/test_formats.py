@@ -13,7 +13,7 @@ from cadpanel.brep import guard
 from cadpanel.brep.formats import rhino
 from cadpanel.brep.formats.catalogue import FORMATS, format_of
 from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import Label, compound_of, packed, shapes_of, unpacked
+from cadpanel.brep.model import Label, Model, Part, compound_of, packed, shapes_of, unpacked
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.select import select_faces
 from cadpanel.errors import ReferenceFileError
@@ -67,12 +67,48 @@ def test_faces_of_a_solid_keep_labels_of_their_own(tmp_path):
     assert [label.name for label in labels] == ["box", "box", "top", "box", "box", "box"]
     assert [label.color for label in labels] == ["#101010", "#101010", "#ff0000", "#101010", "#101010", "#101010"]
     assert all(face.of_solid for face in model.faces())
-    assert [face.number for face in select_faces(model, ("name=TOP",))] == [3]
+    assert [face.number for face in select_faces(model, ("name=top",))] == [3]
     assert [face.number for face in select_faces(model, ("color=#FF0000", "5-6"))] == [3, 5, 6]
     with pytest.raises(ReferenceFileError, match="holds a solid, of which face 1 is one: say which"):
         select_faces(model, None)
     with pytest.raises(ReferenceFileError, match=r"has no face 'bottom': it has faces 1 to 6; names box, top"):
         select_faces(model, ("bottom",))
+
+
+def named_faces(*names):
+    """A model of faces with these names."""
+    parts = tuple(
+        Part(label=Label(name=name), shape=face, face_labels=(Label(),))
+        for name, face in zip(names, strip_faces() * 2, strict=False)
+    )
+    return Model(source="skin.step", format="STEP", unit="millimetre", parts=parts)
+
+
+@pytest.mark.parametrize(
+    ("word", "numbers"),
+    [
+        ("Skin [1]", [1]),
+        ("Skin 1", [2]),
+        ("name=Skin [*]", [1, 5]),
+        ("Skin*1*", [1, 2]),
+        ("*", [1, 2, 3, 4, 5]),
+        ("a*", [3]),
+        ("A*", [4]),
+        ("A**", [4]),
+        ("2-3", [2, 3]),
+        ("002 - 03", [2, 3]),
+        ("1-5", [1, 2, 3, 4, 5]),
+    ],
+)
+def test_a_word_chooses_the_faces_that_are_called_so(word, numbers):
+    model = named_faces("Skin [1]", "Skin 1", "a*", "A**", "Skin [x]", "")
+    assert [face.number for face in select_faces(model, (word,))] == numbers
+
+
+@pytest.mark.parametrize("word", ["skin 1", "Skin ?", "Skin [0-9]", "1-3", "0-1", "0", "3", "2-1", "name=", "9" * 5000])
+def test_a_word_that_fits_no_face_or_only_some_is_refused(word):
+    with pytest.raises(ReferenceFileError, match=rf"has no face '{re.escape(word)}': it has faces 1 to 2; names Skin"):
+        select_faces(named_faces("Skin 1", ""), (word,))
 
 
 @pytest.mark.parametrize(

@@ -138,7 +138,7 @@ def test_damaged_mesh_is_read_or_refused(tmp_path):
     for seed in range(200):
         path.write_bytes(damaged(text, seed))
         try:
-            load_mesh(path, np.zeros(3), 1.0)
+            load_mesh(path, np.zeros(3), 1.0, 0.01)
         except CadpanelError as error:
             sentences.append(str(error))
     assert sentences

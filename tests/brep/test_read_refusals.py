@@ -1,5 +1,6 @@
 """Files that are refused when they are read, and panels that are refused where a feature is asked for: by name."""
 
+import os
 import re
 
 import numpy as np
@@ -16,9 +17,11 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 
 from cadpanel.brep.read import read_reference
-from cadpanel.errors import PanelError, ReferenceFileError
+from cadpanel.brep.survey import survey
+from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
 from cadpanel.fitting.result import fit
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.settings import ReferenceSettings
 from tests.reference_shapes import Lip, kernel_face, kernel_lip, write_products
 
 
@@ -43,6 +46,39 @@ def test_missing_file_folder_and_empty_file_are_refused(tmp_path):
     assert "is a folder" in refusal(tmp_path)
     (tmp_path / "empty.step").write_bytes(b" \n")
     assert "is empty" in refusal(tmp_path / "empty.step")
+
+
+@pytest.mark.parametrize("way", ["reference", "network", "spine", "mesh"])
+def test_name_that_is_too_long_and_pipe_are_refused(tmp_path, strip_file, way):
+    os.mkfifo(tmp_path / "pipe")
+    for path, sentence in (
+        (tmp_path / f"{300 * 'a'}.step", r"cannot be read \(File name too long\): check its name"),
+        (tmp_path / "pipe", r"pipe' is a pipe or a device: save what comes out of it to a file"),
+    ):
+        stations = {"stations": (1000.0,)} if way == "spine" else {}
+        how = {} if way == "reference" else {way: path, **stations}
+        with pytest.raises(ReferenceFileError, match=sentence):
+            read_reference(path if way == "reference" else strip_file, ReferenceSettings(**how))
+
+
+@pytest.mark.parametrize(
+    ("path", "sentence"),
+    [
+        (None, "the reference must be the name of a file, not None"),
+        (3, "the reference must be the name of a file, not 3"),
+        (b"x.step", "the reference must be the name of a file, not b'x.step'"),
+        ("", "the reference must be the name of a file, not ''"),
+        ("a\0b", r"the reference must be the name of a file, not 'a\\x00b'"),
+        ("D\udce4cher.step", r"the name of the reference, 'D\\udce4cher.step', is not UTF-8: rename the file"),
+    ],
+)
+def test_what_is_no_name_of_a_file_is_refused(path, sentence):
+    for read in (read_reference, survey):
+        with pytest.raises(SettingsError, match=sentence):
+            read(path)
+    if path is not None:
+        with pytest.raises(SettingsError, match=sentence.replace("reference", "network")):
+            ReferenceSettings(network=path)
 
 
 @pytest.mark.parametrize(

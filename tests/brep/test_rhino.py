@@ -62,16 +62,22 @@ def test_nurbs_surface_is_the_same_in_every_point(tmp_path, rational):
 
 
 @pytest.mark.parametrize(
-    ("unit", "factor"), [("Millimeters", 1.0), ("Meters", 1000.0), ("Inches", 25.4), ("Feet", 304.8)]
+    ("unit", "word", "factor"),
+    [
+        ("Millimeters", "millimetre", 1.0),
+        ("Meters", "metre", 1000.0),
+        ("Inches", "inch", 25.4),
+        ("Feet", "foot", 304.8),
+    ],
 )
-def test_model_units_become_millimetres(tmp_path, unit, factor):
+def test_model_units_become_millimetres(tmp_path, unit, word, factor):
     file, surface = file_in(unit), bent_surface(length=9.0)
     file.Objects.AddSurface(surface)
     path = written(tmp_path / "units.3dm", file)
     model = load_model(path)
-    assert model.unit == unit.lower()
+    assert model.unit == word
     assert_same_surface(model.faces()[0].face, surface, factor)
-    with pytest.raises(ReferenceFileError, match=r"says itself that its unit is the"):
+    with pytest.raises(ReferenceFileError, match=rf"says itself that its unit is the {word}:"):
         load_model(path, 10.0)
 
 
@@ -106,6 +112,60 @@ def test_trimmed_plane_keeps_its_outline(tmp_path):
     file.Objects.AddBrep(rhino.Brep.CreateTrimmedPlane(rhino.Plane.WorldXY(), circle))
     (face,) = load_model(written(tmp_path / "disc.3dm", file)).faces()
     assert area_of(face.face, exactly=True) == pytest.approx(np.pi * 700.0**2, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    "far_corners",
+    [
+        ((500.0, 1000.0, 0.0), (3500.0, 1000.0, 0.0)),
+        ((-2000.0, 1000.0, 0.0), (1000.0, 1000.0, 0.0)),
+        ((-400.0, 1000.0, 0.0), (3400.0, 1000.0, 0.0)),
+        ((-400.0, 1000.0, 300.0), (3400.0, 1000.0, -100.0)),
+    ],
+    ids=["parallelogram", "slender parallelogram", "trapezoid", "hypar"],
+)
+def test_polysurface_whose_face_is_no_rectangle_is_the_same_in_every_point(tmp_path, far_corners):
+    surface = rhino.NurbsSurface.Create(3, False, 2, 2, 2, 2)
+    for knots in (surface.KnotsU, surface.KnotsV):
+        knots[0], knots[1] = 0.0, 1.0
+    for j, row in enumerate((((0.0, 0.0, 0.0), (3000.0, 0.0, 0.0)), far_corners)):
+        for i, point in enumerate(row):
+            surface.Points[i, j] = rhino.Point4d(*point, 1.0)
+    file = file_in()
+    file.Objects.AddBrep(rhino.Brep.CreateFromSurface(surface))
+    (face,) = load_model(written(tmp_path / "quad.3dm", file)).faces()
+    assert patch_of(face.face).whole
+    assert_same_surface(face.face, surface)
+
+
+def placed_once(geometry, transform):
+    """A file with a block of one object, placed once."""
+    file = file_in()
+    file.InstanceDefinitions.Add(
+        "panel", "", "", "", rhino.Point3d(0.0, 0.0, 0.0), (geometry,), (rhino.ObjectAttributes(),)
+    )
+    file.Objects.AddInstanceObject(rhino.InstanceReference(file.InstanceDefinitions[0].Id, transform))
+    return file
+
+
+def test_sheared_block_of_a_polysurface_is_sheared(tmp_path):
+    surface, shear = bent_surface(), rhino.Transform(1.0)
+    shear.M02 = 1.0
+    file = placed_once(rhino.Brep.CreateFromSurface(surface), shear)
+    (face,) = load_model(written(tmp_path / "sheared.3dm", file)).faces()
+    assert surface.Transform(shear)
+    assert_same_surface(face.face, surface)
+
+
+@pytest.mark.parametrize(("entry", "value"), [("M22", 0.0), ("M33", 0.0), ("M03", float("nan"))])
+def test_block_that_rhino_cannot_place_is_refused(tmp_path, entry, value):
+    arc = rhino.Arc(rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 500.0), 1.5)
+    extrusion = rhino.Extrusion.Create(rhino.NurbsCurve.CreateFromArc(arc), 3000.0, False)
+    transform = rhino.Transform(1.0)
+    setattr(transform, entry, value)
+    path = written(tmp_path / "flattened.3dm", placed_once(extrusion, transform))
+    with pytest.raises(ReferenceFileError, match=r"'flattened.3dm' holds .* cannot be placed as its block says"):
+        load_model(path)
 
 
 def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_path):

@@ -297,6 +297,7 @@ def test_face_drawn_twice_and_face_without_width_are_left_out_with_a_note():
         ({"stations": (math.nan,)}, "positive lengths"),
         ({"spine": "spine.step"}, "give stations, too"),
         ({"divide": 3, "grid": (1, 2)}, "divide and grid are ways to cut the same surface: choose one"),
+        ({"unit": ["mm"]}, "there is no unit"),
         ({"unit": "cubit"}, "there is no unit 'cubit'"),
         ({"faces": ()}, "faces are chosen by"),
         ({"seam_tolerance": 0.0}, "must be a positive length"),

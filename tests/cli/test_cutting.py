@@ -51,6 +51,8 @@ def test_flat_panels_are_reported_without_a_bend(run: Run, strip: Path, tmp_path
         (("--lip", "300"), "give the number of panels, too"),
         (("--unit", "ell"), "there is no unit 'ell'"),
         (("--divide", "2", "--faces", "9"), "has no face '9': it has faces 1 to 3"),
+        (("--network", f"{300 * 'a'}.step"), "(File name too long): check its name"),
+        (("--mesh", "D\udce4cher.obj"), r"the name of the mesh, 'D\udce4cher.obj', is not UTF-8: rename the file"),
         (("--mesh", "none.obj"), "'none.obj' does not exist"),
         (("--network", "none.step"), "'none.step' does not exist"),
         (("--stations", "1000", "--spine", "none.step"), "'none.step' does not exist"),

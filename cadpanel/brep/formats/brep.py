@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_COMPSOLID, TopAbs_FACE, TopAbs_SH
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.formats.format import Format
-from cadpanel.brep.formats.units import scaled
+from cadpanel.brep.formats.units import no_unit, scaled
 from cadpanel.brep.model import Label, Model, Part, children, shapes_of
 from cadpanel.errors import ReferenceFileError
 
@@ -52,13 +52,13 @@ def _read(path: Path, millimetres: float | None) -> Model:
         raise ReferenceFileError(
             f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and write it again."
         ) from error
-    notes = () if millimetres else (f"'{path.name}' has no unit, as no .brep has; it is read as millimetres.",)
+    notes = () if millimetres else (no_unit(path.name, ".brep"),)
     unit = "none, read as millimetres" if millimetres is None else f"none, read as {millimetres:g} mm"
     parts = tuple(
         Part(label=Label(), shape=part, face_labels=(Label(),) * len(shapes_of(part, TopAbs_FACE)))
         for part in _parts(shape)
     )
-    return Model(source=path.name, format=BREP.name, unit=unit, parts=parts, notes=notes)
+    return Model(source=path.name, format=BREP.name, unit=unit, own_unit=False, parts=parts, notes=notes)
 
 
 def _parts(shape: TopoDS_Shape) -> list[TopoDS_Shape]:

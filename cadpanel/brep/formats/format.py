@@ -18,8 +18,9 @@ class Format:
         suffixes: usual endings of its files, lower case.
         recognises: whether the first bytes of a file are of this format.
         check: refuses a file by its text alone, before the kernel sees it: told the path and all bytes.
-        read: reads a file into a model: told the path, and how many mm its unit has where the user says so (None: the
-            file's own). Runs in a guarded interpreter of its own, as the kernel may crash over a damaged file.
+        read: reads a file into a model: told the path, and how many mm the unit has that the user gives (None: he gives
+            none), which counts for a file without one of its own. Runs in a guarded interpreter of its own, as the
+            kernel may crash over a damaged file.
     """
 
     name: str

@@ -10,7 +10,6 @@ from OCP.IGESCAFControl import IGESCAFControl_Reader
 from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.formats.format import Format
-from cadpanel.brep.formats.units import refuse_unit
 from cadpanel.brep.formats.xcaf import new_document, parts_of
 from cadpanel.brep.model import Model
 from cadpanel.brep.silence import silence_kernel
@@ -42,7 +41,7 @@ def _check(path: Path, text: bytes) -> None:
         )
 
 
-def _read(path: Path, millimetres: float | None) -> Model:
+def _read(path: Path, _millimetres: float | None) -> Model:
     silence_kernel()
     document = new_document()
     reader = IGESCAFControl_Reader()
@@ -66,8 +65,6 @@ def _read(path: Path, millimetres: float | None) -> Model:
         raise ReferenceFileError(
             f"'{path.name}' is in a unit that it calls '{word}', which IGES does not have: export it in millimetres."
         )
-    if millimetres is not None:
-        raise refuse_unit(path.name, UNITS[word])
     return Model(source=path.name, format=IGES.name, unit=UNITS[word], parts=parts)
 
 

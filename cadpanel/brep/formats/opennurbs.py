@@ -6,6 +6,7 @@ face's trimming curves in space and not in the parameter plane; the kernel proje
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from OCP.BRepBuilderAPI import (
 )
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
-from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface
+from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Curve
+from OCP.GeomAPI import GeomAPI_ProjectPointOnCurve
 from OCP.gp import gp_Pnt
 from OCP.ShapeFix import ShapeFix_Face
 from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
@@ -141,8 +143,7 @@ def _face(brep: RhinoObject, face: RhinoObject) -> TopoDS_Face:
 
 
 def _trimmed(geometry: Geom_BSplineSurface, loops: list[list[TopoDS_Edge]]) -> TopoDS_Face:
-    making = BRepBuilderAPI_MakeFace(geometry, SURFACE_TOLERANCE)
-    making = None
+    making: BRepBuilderAPI_MakeFace | None = None
     for loop in loops:
         wiring = BRepBuilderAPI_MakeWire()
         for edge in loop:
@@ -170,22 +171,21 @@ def _trimmed(geometry: Geom_BSplineSurface, loops: list[list[TopoDS_Edge]]) -> T
 def _is_border(geometry: Geom_BSplineSurface, edges: list[TopoDS_Edge]) -> bool:
     """Tell whether all edges run along the border of the surface's parameter range."""
     u_0, u_1, v_0, v_1 = geometry.Bounds()
-    borders = []
-    for curve_on_border in (geometry.UIso(u_0), geometry.UIso(u_1), geometry.VIso(v_0), geometry.VIso(v_1)):
-        borders.append(curve_on_border)
-    from OCP.GeomAPI import GeomAPI_ProjectPointOnCurve
-
+    borders = (geometry.UIso(u_0), geometry.UIso(u_1), geometry.VIso(v_0), geometry.VIso(v_1))
     for edge in edges:
         along = BRep_Tool.Curve_s(edge, 0.0, 1.0)
         first, last = along.FirstParameter(), along.LastParameter()
         points = [along.Value(first + part * (last - first)) for part in np.linspace(0.0, 1.0, CHECKED_POINTS).tolist()]
-        if not any(_all_near(points, border, GeomAPI_ProjectPointOnCurve) for border in borders):
+        if not any(all(_distance(point, border) < NATURAL_BORDER for point in points) for border in borders):
             return False
     return True
 
 
-def _all_near(points: list[gp_Pnt], border: Any, project: Any) -> bool:
-    return all(project(point, border).LowerDistance() < NATURAL_BORDER for point in points)
+def _distance(point: gp_Pnt, border: Geom_Curve) -> float:
+    """From a point to a curve; its ends count, too, as a point beyond them has no foot square to the curve."""
+    ends = (border.Value(border.FirstParameter()), border.Value(border.LastParameter()))
+    feet = GeomAPI_ProjectPointOnCurve(point, border)
+    return float(min(*map(point.Distance, ends), feet.LowerDistance() if feet.NbPoints() else math.inf))
 
 
 def _from_homogeneous(numbers: Array) -> tuple[Array, Array]:

@@ -19,27 +19,27 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.formats.format import Format, check_nothing
 from cadpanel.brep.formats.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
-from cadpanel.brep.formats.units import refuse_unit, scaled
+from cadpanel.brep.formats.units import scaled
 from cadpanel.brep.model import Label, Model, Part, shapes_of
 from cadpanel.errors import ReferenceFileError
 
 MAGIC = re.compile(rb"\s*3D Geometry File Format")
 # Blocks may hold blocks; a file in which they go deeper than this holds itself.
 DEEPEST_BLOCK = 32
-# Millimetres of the units that Rhino knows, by its names for them.
-MILLIMETRES = {
-    "Microns": 1e-3,
-    "Millimeters": 1.0,
-    "Centimeters": 10.0,
-    "Decimeters": 100.0,
-    "Meters": 1000.0,
-    "Dekameters": 1e4,
-    "Hectometers": 1e5,
-    "Kilometers": 1e6,
-    "Mils": 0.0254,
-    "Inches": 25.4,
-    "Feet": 304.8,
-    "Yards": 914.4,
+# The units that Rhino knows, by its names for them: what they are called here, and how many mm they have.
+UNITS = {
+    "Microns": ("micrometre", 1e-3),
+    "Millimeters": ("millimetre", 1.0),
+    "Centimeters": ("centimetre", 10.0),
+    "Decimeters": ("decimetre", 100.0),
+    "Meters": ("metre", 1000.0),
+    "Dekameters": ("decametre", 1e4),
+    "Hectometers": ("hectometre", 1e5),
+    "Kilometers": ("kilometre", 1e6),
+    "Mils": ("mil", 0.0254),
+    "Inches": ("inch", 25.4),
+    "Feet": ("foot", 304.8),
+    "Yards": ("yard", 914.4),
 }
 # What rhino3dm gives is untyped; each of these is one of its objects.
 RhinoFile = Any
@@ -49,9 +49,10 @@ Transform = Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Placed:
-    """An object's geometry where it stands, and what the file says of it."""
+    """An object's geometry where it stands, and what the file says of it; whether Rhino could put it there."""
 
     geometry: RhinoObject
+    stands: bool
     label: Label
     place: int
 
@@ -61,12 +62,14 @@ def _read(path: Path, millimetres: float | None) -> Model:
     file = rhino.File3dm.Read(str(path))
     if file is None:
         raise ReferenceFileError(f"'{path.name}' is damaged: rhino3dm cannot read it; save it again in Rhino.")
-    unit, factor = _unit(path.name, file, millimetres)
+    unit, factor, own = _unit(path.name, file, millimetres)
     parts: list[Part] = []
     left_out: Counter[str] = Counter()
     for placed in _objects(path.name, file, left_out):
         try:
             shape = _shape(rhino, placed.geometry)
+            if shape is not None and not placed.stands:
+                raise ConversionError("it cannot be placed as its block says, flattened or with a number that is none")
         except (ConversionError, Standard_Failure) as error:
             raise ReferenceFileError(
                 f"'{path.name}' holds an object that cannot be read (number {placed.place}"
@@ -79,7 +82,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
         shape = scaled(shape, factor)
         parts.append(Part(label=placed.label, shape=shape, face_labels=(Label(),) * len(shapes_of(shape, TopAbs_FACE))))
     notes = tuple(f"'{path.name}': {count} x {kind} left out." for kind, count in sorted(left_out.items()))
-    return Model(source=path.name, format=RHINO.name, unit=unit, parts=tuple(parts), notes=notes)
+    return Model(source=path.name, format=RHINO.name, unit=unit, own_unit=own, parts=tuple(parts), notes=notes)
 
 
 def load_rhino3dm(source: str) -> Any:
@@ -97,18 +100,16 @@ def load_rhino3dm(source: str) -> Any:
         ) from None
 
 
-def _unit(name: str, file: RhinoFile, millimetres: float | None) -> tuple[str, float]:
-    """The model's unit as a word, and how many mm it has."""
+def _unit(name: str, file: RhinoFile, millimetres: float | None) -> tuple[str, float, bool]:
+    """The model's unit as a word, how many mm it has, and whether the file says so."""
     word = str(file.Settings.ModelUnitSystem.name)
-    if word in MILLIMETRES:
-        if millimetres is not None:
-            raise refuse_unit(name, word.lower().rstrip("s"))
-        return word.lower(), MILLIMETRES[word]
+    if word in UNITS:
+        return *UNITS[word], True
     if millimetres is None:
         raise ReferenceFileError(
             f"'{name}' has no unit that can be converted (it says '{word}'): give one, or set one in Rhino."
         )
-    return f"none, read as {millimetres:g} mm", millimetres
+    return f"none, read as {millimetres:g} mm", millimetres, False
 
 
 def _objects(name: str, file: RhinoFile, left_out: Counter[str]) -> Iterator[_Placed]:
@@ -143,9 +144,9 @@ def _expand(
     if type(geometry).__name__ != "InstanceReference":
         if transforms:
             geometry = geometry.Duplicate()
-            for transform in reversed(transforms):
-                geometry.Transform(transform)
-        yield _Placed(geometry=geometry, label=label, place=place)
+        # Of a perspective Rhino makes nothing of use, and says so for some objects only.
+        stands = all(transform.IsAffine and geometry.Transform(transform) for transform in reversed(transforms))
+        yield _Placed(geometry=geometry, stands=stands, label=label, place=place)
         return
     definition = file.InstanceDefinitions.FindId(geometry.ParentIdefId)
     if definition is None:

@@ -11,7 +11,6 @@ from OCP.TColStd import TColStd_SequenceOfAsciiString
 
 from cadpanel.brep.file_check import START, check_step_text
 from cadpanel.brep.formats.format import Format
-from cadpanel.brep.formats.units import refuse_unit
 from cadpanel.brep.formats.xcaf import new_document, parts_of
 from cadpanel.brep.model import Model
 from cadpanel.brep.products import transfer
@@ -22,7 +21,7 @@ from cadpanel.errors import ReferenceFileError
 NAMES_OF_FACES = "read.stepcaf.subshapes.name"
 
 
-def _read(path: Path, millimetres: float | None) -> Model:
+def _read(path: Path, _millimetres: float | None) -> Model:
     silence_kernel()
     document = new_document()
     reader = STEPCAFControl_Reader()
@@ -36,10 +35,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
         ) from error
     finally:
         Interface_Static.SetIVal_s(NAMES_OF_FACES, 0)
-    unit = _unit(reader)
-    if millimetres is not None:
-        raise refuse_unit(path.name, unit)
-    return Model(source=path.name, format=STEP.name, unit=unit, parts=parts)
+    return Model(source=path.name, format=STEP.name, unit=_unit(reader), parts=parts)
 
 
 def _unit(reader: STEPCAFControl_Reader) -> str:

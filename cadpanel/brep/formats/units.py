@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.BRepLib import BRepLib
 from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.errors import ReferenceFileError
 
-
-def refuse_unit(name: str, own: str) -> ReferenceFileError:
-    """What to say where the user gives a unit and the file has one of its own."""
-    return ReferenceFileError(
-        f"'{name}' says itself that its unit is the {own}: leave the unit out, or correct it in the export."
-    )
+def no_unit(name: str, kind: str) -> str:
+    """What the report says of a file in a format without units where the user gives none."""
+    return f"'{name}' has no unit, as no {kind} has; it is read as millimetres."
 
 
 def scaled(shape: TopoDS_Shape, factor: float) -> TopoDS_Shape:
@@ -29,4 +26,7 @@ def shifted(shape: TopoDS_Shape, by: tuple[float, float, float]) -> TopoDS_Shape
     """A shape moved, its geometry and not only its placement: what the kernel computes with becomes small."""
     translation = gp_Trsf()
     translation.SetTranslation(gp_Vec(*by))
-    return BRepBuilderAPI_Transform(shape, translation, True).Shape()
+    moved = BRepBuilderAPI_Transform(shape, translation, True).Shape()
+    # Far from the origin, ends and edges lie apart by more than their tolerance: a double holds no more digits there.
+    BRepLib.UpdateTolerances_s(moved, False)
+    return moved

@@ -13,12 +13,15 @@ from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
-from cadpanel.brep.subdivide.mesh import load_mesh, require_all_panels
+from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
 from cadpanel.brep.subdivide.panel import CutPanel
-from cadpanel.brep.subdivide.stations import cut_stations
+from cadpanel.brep.subdivide.stations import cut_stations, spine_of
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
+
+DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
+"""What to do about a curve that does not cut."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,10 +40,6 @@ class _Skin:
     surfaces: Sequence[Surface]
     settings: ReferenceSettings
     file: Path
-
-    @property
-    def origin(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        return np.array(self.model.origin, dtype=np.float64)
 
 
 def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, file: Path) -> Cut:
@@ -77,49 +76,53 @@ def _grid(skin: _Skin) -> Cut:
 
 def _stations(skin: _Skin) -> Cut:
     how = skin.settings
-    cut = [
-        cut_stations(surface, how.stations or (), how.spine, skin.model.source, skin.origin, how.millimetres)
-        for surface in skin.surfaces
-    ]
-    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+    found = None if how.spine is None else load_curves(how.spine, skin.model, how.millimetres)
+    spine = None if found is None else spine_of(found)
+    cut = [cut_stations(surface, how.stations or (), spine, skin.model.source) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=found.notes if found else ())
 
 
 def _network(skin: _Skin) -> Cut:
     file = skin.settings.network or skin.file
-    if file.exists() and file.resolve() == skin.file.resolve():
+    if skin.settings.beside(skin.file) is None:
         curves = sampled(skin.model.curves(), file.name, np.zeros(3))
         if not curves:
             raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
-    else:
-        curves = load_curves(file, skin.origin, skin.settings.millimetres)
-    return _cut_by_curves(skin, curves, file.name)
+        return _cut_by_curves(skin, curves, file.name, DRAW_ON)
+    found = load_curves(file, skin.model, skin.settings.millimetres)
+    return _cut_by_curves(skin, found.curves, file.name, DRAW_ON, found.notes)
 
 
 def _mesh(skin: _Skin) -> Cut:
     file = skin.settings.mesh or skin.file
-    mesh = load_mesh(file, skin.origin, skin.settings.millimetres or 1.0)
-    cut = _cut_by_curves(skin, mesh.curves(), file.name)
+    origin = np.array(skin.model.origin)
+    mesh = load_mesh(file, origin, skin.settings.millimetres, skin.settings.seam_tolerance)
+    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER, mesh.notes)
     require_all_panels(mesh, cut.panels, file.name, skin.model.source)
     return cut
 
 
-def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str) -> Cut:
-    """Cut every surface by the curves that lie over it, and refuse a curve that lies over none."""
+def _cut_by_curves(
+    skin: _Skin, curves: Sequence[Curve], curve_source: str, remedy: str, notes: tuple[str, ...] = ()
+) -> Cut:
+    """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
     tolerance = skin.settings.seam_tolerance
     landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
     stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:
         called = stray[0].called
         raise ReferenceFileError(
-            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': take "
-            "it out, or draw it on the surface."
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': "
+            f"{remedy}."
         )
     panels: list[CutPanel] = []
     for surface, landing in zip(skin.surfaces, landings, strict=True):
-        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, tolerance)
+        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, remedy, tolerance)
     farthest = max(landing.offset for landing in landings)
-    notes = (f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it.",)
-    return Cut(panels=tuple(panels), notes=notes if farthest > WORTH_A_NOTE else ())
+    if farthest > WORTH_A_NOTE:
+        off = f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it."
+        notes = (*notes, off)
+    return Cut(panels=tuple(panels), notes=notes)
 
 
 WAYS: dict[str, Callable[[_Skin], Cut]] = {

@@ -16,9 +16,12 @@ from scipy.spatial import cKDTree
 from cadpanel.brep import kernel
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
+from cadpanel.brep.formats.units import no_unit
 from cadpanel.brep.model import compound_of
 from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.weld import welded
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
@@ -27,19 +30,40 @@ Array = NDArray[np.float64]
 # outline of the surface; what lies beyond is not projected.
 DRAWN_ON = 0.02
 FEWEST_CORNERS = 3
+GIVE_UNIT = "give the mesh's unit with --unit where that is not mm"
+LAY_OVER = f"lay the mesh over the surface, up to its outline all round, and {GIVE_UNIT}"
+"""What to do about a mesh whose edges do not cut the surface into its faces."""
 # Points along an edge that are brought onto the surface.
 POINTS = 33
 
 
+class _Edge(Curve):
+    """An edge between two faces, called by the corners at its ends."""
+
+    __slots__ = ()
+
+    @property
+    def called(self) -> str:
+        """How a message speaks of it."""
+        return f"the edge {self.name}"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mesh:
-    """Corners (n, 3) in the reference's coordinates, mm, and the corners of each face, in order round it."""
+    """A mesh.
+
+    Attributes:
+        corners: (n, 3) in the reference's coordinates, mm.
+        faces: the corners of each face, in order round it.
+        notes: what was done to it, one sentence each.
+    """
 
     corners: Array
     faces: tuple[tuple[int, ...], ...]
+    notes: tuple[str, ...] = ()
 
     def curves(self) -> tuple[Curve, ...]:
-        """The edges between two faces, in their order, as curves."""
+        """The edges between two faces, in their order, as curves; none where no faces meet."""
         uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
         on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
         found: list[Curve] = []
@@ -50,9 +74,9 @@ class Mesh:
             stop = last + way if edge[1] in on_border else last
             parts = np.linspace(0.0, 1.0, POINTS)[:, None]
             found.append(
-                Curve(
+                _Edge(
                     number=len(found) + 1,
-                    name=f"edge {edge[0] + 1} - {edge[1] + 1}",
+                    name=f"from corner {edge[0] + 1} to {edge[1] + 1}",
                     edge=BRepBuilderAPI_MakeEdge(kernel.point(start), kernel.point(stop)).Edge(),
                     points=start + parts * (stop - start),
                 )
@@ -64,27 +88,37 @@ class Mesh:
         return np.array([self.corners[list(face)].mean(axis=0) for face in self.faces])
 
 
-def load_mesh(path: Path, origin: Array, millimetres: float) -> Mesh:
+def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: float) -> Mesh:
     """Read an OBJ or OFF file.
 
     Args:
         path: the file.
         origin: (3,) what was taken off the reference's coordinates, mm.
-        millimetres: how many the mesh's unit has.
+        millimetres: how many the mesh's unit has; None where the user gives none.
+        tolerance: corners this close are the same, mm.
 
     Raises:
         ReferenceFileError: it is neither, is damaged, or its faces do not join.
     """
-    text = contents(path).decode("utf-8", errors="replace")
+    text = contents(path).decode("utf-8-sig", errors="replace")
     try:
-        corners, faces = _off(text) if text.lstrip().startswith("OFF") else _obj(text)
-    except (ValueError, IndexError) as error:
+        corners, faces = corners_and_faces(text)
+    except ValueError as error:
         raise ReferenceFileError(f"'{path.name}' is a damaged OBJ or OFF mesh ({error}): export it again.") from error
     if not faces:
         raise ReferenceFileError(f"'{path.name}' is no OBJ or OFF mesh with faces: export the panels' mesh as one.")
-    points = millimetres * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
-    _check(path.name, points, faces)
-    return Mesh(corners=points, faces=tuple(faces))
+    points = (millimetres or 1.0) * np.array(corners, dtype=np.float64).reshape(-1, 3) - origin
+    if not np.isfinite(points).all():
+        raise ReferenceFileError(f"'{path.name}' has corners that are not numbers: export the mesh again.")
+    _check_corners(path.name, faces, len(points), "has fewer than three different corners, or one that is not there")
+    shared, joined = welded(points, faces, tolerance)
+    fault = f"has fewer than three corners, or one twice, as those within {tolerance:g} mm of each other are the same"
+    _check_corners(path.name, shared, len(points), fault)
+    _check_edges(path.name, shared)
+    notes = [] if millimetres else [no_unit(path.name, "mesh")]
+    if joined:
+        notes.append(f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as one.")
+    return Mesh(corners=points, faces=shared, notes=tuple(notes))
 
 
 def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str, source: str) -> None:
@@ -95,8 +129,8 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
     """
     if len(panels) != len(mesh.faces):
         raise ReferenceFileError(
-            f"The mesh '{mesh_source}' has {len(mesh.faces)} faces but cuts '{source}' into {len(panels)} panels: it "
-            "must reach the outline of the surface all round."
+            f"The mesh '{mesh_source}' has {len(mesh.faces)} faces, but the edges between them cut '{source}' into "
+            f"{len(panels)} panels: {LAY_OVER}."
         )
     samples = [np.concatenate([face.points for face in sample_faces(compound_of(panel.faces))]) for panel in panels]
     _, nearest = cKDTree(mesh.middles()).query(np.array([points.mean(axis=0) for points in samples]))
@@ -104,18 +138,17 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
     if alone.max() > 1:
         raise ReferenceFileError(
             f"Face {int(alone.argmax()) + 1} of the mesh '{mesh_source}' lies over {int(alone.max())} panels of "
-            f"'{source}', and another one over none: lay the mesh over the surface."
+            f"'{source}', and another one over none: {LAY_OVER}."
         )
 
 
-def _check(name: str, corners: Array, faces: Sequence[tuple[int, ...]]) -> None:
-    if not np.isfinite(corners).all():
-        raise ReferenceFileError(f"'{name}' has corners that are not numbers: export the mesh again.")
+def _check_corners(name: str, faces: Sequence[tuple[int, ...]], count: int, fault: str) -> None:
     for place, face in enumerate(faces, start=1):
-        if len(face) < FEWEST_CORNERS or len(set(face)) < len(face) or not all(0 <= c < len(corners) for c in face):
-            raise ReferenceFileError(
-                f"Face {place} of '{name}' has fewer than three different corners, or one that is not there: repair it."
-            )
+        if len(face) < FEWEST_CORNERS or len(set(face)) < len(face) or not all(0 <= c < count for c in face):
+            raise ReferenceFileError(f"Face {place} of '{name}' {fault}: repair it, or {GIVE_UNIT}.")
+
+
+def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
     uses = Counter(_edge(*pair) for face in faces for pair in _round(face))
     if max(uses.values()) > 2:
         (first, last), count = max(uses.items(), key=lambda item: item[1])
@@ -130,37 +163,3 @@ def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:
 
 def _edge(first: int, last: int) -> tuple[int, int]:
     return (min(first, last), max(first, last))
-
-
-def _obj(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
-    corners: list[list[float]] = []
-    faces: list[tuple[int, ...]] = []
-    for line in text.replace("\\\n", " ").splitlines():
-        words = line.split("#", 1)[0].split()
-        if words[:1] == ["v"]:
-            corners.append([float(word) for word in words[1:4]])
-        elif words[:1] == ["f"]:
-            numbers = [int(word.split("/", 1)[0]) for word in words[1:]]
-            faces.append(tuple(number - 1 if number > 0 else len(corners) + number for number in numbers))
-    if any(len(corner) != 3 for corner in corners):
-        raise ValueError("a corner has fewer than three coordinates")
-    return corners, faces
-
-
-def _off(text: str) -> tuple[list[list[float]], list[tuple[int, ...]]]:
-    words = [word for line in text.splitlines() for word in line.split("#", 1)[0].split()]
-    count, face_count = int(words[1]), int(words[2])
-    if count < 0 or face_count < 0 or 4 + 3 * count > len(words):
-        raise ValueError("it breaks off before its last corner")
-    numbers = [float(word) for word in words[4 : 4 + 3 * count]]
-    corners = [numbers[place : place + 3] for place in range(0, 3 * count, 3)]
-    faces = []
-    # Faces are lines, as they may end with a colour.
-    lines = [line.split("#", 1)[0].split() for line in text.splitlines()]
-    rows = [line for line in lines if line][-face_count:] if face_count else []
-    for row in rows:
-        size = int(row[0])
-        faces.append(tuple(int(word) for word in row[1 : 1 + size]))
-        if len(faces[-1]) != size:
-            raise ValueError("a face has fewer corners than it says")
-    return corners, faces

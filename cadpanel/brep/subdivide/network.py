@@ -59,7 +59,13 @@ def land_curves(surface: Surface, curves: Sequence[Curve], tolerance: float) -> 
 
 
 def cut_network(
-    surface: Surface, curves: Sequence[Curve], landing: Landing, source: str, curve_source: str, tolerance: float
+    surface: Surface,
+    curves: Sequence[Curve],
+    landing: Landing,
+    source: str,
+    curve_source: str,
+    remedy: str,
+    tolerance: float,
 ) -> tuple[CutPanel, ...]:
     """Cut a surface along curves.
 
@@ -72,6 +78,7 @@ def cut_network(
         landing: what they leave on the surface.
         source: the reference's name.
         curve_source: the name of the file that the curves come from.
+        remedy: what to do about a curve that does not cut.
         tolerance: how far a curve may end from where it should, mm.
 
     Raises:
@@ -84,7 +91,7 @@ def cut_network(
         called = curves[index].called
         raise ReferenceFileError(
             f"{called[:1].upper()}{called[1:]} of '{curve_source}' separates no two panels near ({x:.1f}, {y:.1f}, "
-            f"{z:.1f}): draw it on to the next curve or to the outline of the surface, or take it out."
+            f"{z:.1f}): {remedy}."
         )
     return _panels(surface.name, cut)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.brep.connect import Surface
-from cadpanel.brep.curves import chain, load_curves
+from cadpanel.brep.curves import CurveFile, chain
 from cadpanel.brep.planes import cut_by_planes
 from cadpanel.brep.strip import MIDDLE_POINTS, STEP, Cuts, find_strip
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
@@ -22,26 +22,39 @@ Array = NDArray[np.float64]
 BEYOND = 1.05
 
 
-def cut_stations(
-    surface: Surface,
-    stations: Sequence[float],
-    spine: Path | None,
-    source: str,
-    origin: Array,
-    millimetres: float | None,
-) -> tuple[CutPanel, ...]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spine:
+    """A line along which stations are measured: (q, 3) points, mm, and the name of its file."""
+
+    line: Array
+    source: str
+
+
+def spine_of(file: CurveFile) -> Spine:
+    """The spine that the curves of a file make.
+
+    Raises:
+        ReferenceFileError: they do not follow each other.
+    """
+    line = chain([curve.points for curve in file.curves])
+    if line is None:
+        raise ReferenceFileError(
+            f"'{file.source}' holds {len(file.curves)} curves that do not follow each other: a spine is one line."
+        )
+    return Spine(line=line, source=file.source)
+
+
+def cut_stations(surface: Surface, stations: Sequence[float], spine: Spine | None, source: str) -> tuple[CutPanel, ...]:
     """Cut a surface by planes square to its middle line or to a spine.
 
     Args:
         surface: what to cut.
         stations: lengths along the line, mm, rising.
-        spine: a file with one curve; None for the line midway between the surface's long edges.
+        spine: along what the lengths are measured; None for the line midway between the surface's long edges.
         source: the reference's name.
-        origin: (3,) what was taken off the reference's coordinates, mm.
-        millimetres: how many the spine file's unit has where it says none.
 
     Raises:
-        ReferenceFileError: the spine is none, or the surface cannot be cut there.
+        ReferenceFileError: the surface cannot be cut there.
         SettingsError: a station lies beyond the line's end.
     """
     if spine is None:
@@ -49,7 +62,7 @@ def cut_stations(
         _require_on_line(stations, strip.length, f"the strip of {surface.numbers}")
         cuts = strip.planes(np.array(stations) / strip.length)
     else:
-        cuts = _along_spine(surface, stations, spine, origin, millimetres)
+        cuts = _along_spine(surface, stations, spine)
     return along_panels(surface.name, cut_by_planes(surface, cuts, source))
 
 
@@ -60,17 +73,10 @@ def _require_on_line(stations: Sequence[float], length: float, what: str) -> Non
         )
 
 
-def _along_spine(
-    surface: Surface, stations: Sequence[float], spine: Path, origin: Array, millimetres: float | None
-) -> Cuts:
-    curves = load_curves(spine, origin, millimetres)
-    line = chain([curve.points for curve in curves])
-    if line is None:
-        raise ReferenceFileError(
-            f"'{spine.name}' holds {len(curves)} curves that do not follow each other: a spine is one line."
-        )
+def _along_spine(surface: Surface, stations: Sequence[float], spine: Spine) -> Cuts:
+    line = spine.line
     lengths = arc_length(line)
-    _require_on_line(stations, float(lengths[-1]), f"the spine in '{spine.name}'")
+    _require_on_line(stations, float(lengths[-1]), f"the spine in '{spine.source}'")
     points = np.concatenate([array for face in surface.faces for array in (face.samples.points, *face.samples.edges)])
     fine = np.linspace(0.0, lengths[-1], MIDDLE_POINTS)
     middle = interpolate([lengths], line, [fine])

@@ -11,6 +11,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 
+from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import Tilt
 from cadpanel.features.feature import Feature
 from cadpanel.fitting.blend import Blend
@@ -136,6 +137,9 @@ def fit(
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: a setting is out of its range.
     """
+    given: object = reference
+    if not isinstance(given, Reference):
+        raise SettingsError(f"what is fitted is a reference as read() gives it, not {given!r}")
     return fit_reference(reference, _asked(settings, changes), progress)
 
 

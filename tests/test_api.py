@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from pathlib import Path
+from typing import cast
 
 import build123d as bd
 import cadquery as cq
@@ -92,3 +93,14 @@ def test_a_polygon_is_built_written_and_handed_over_like_any_other_panel(tmp_pat
     assert part.volume == pytest.approx(volume, rel=1e-12)
     cp.write_step(shape, tmp_path / "one.step", skins=True)
     assert [product for product, _ in read_step_shapes(tmp_path / "one.step")] == [shape.name]
+
+
+def test_a_file_name_is_no_reference() -> None:
+    with pytest.raises(cp.SettingsError, match=r"a reference as read\(\) gives it, not 'file.step'"):
+        cp.fit(cast("cp.Reference", "file.step"))
+
+
+@pytest.mark.parametrize("thickness", ["3", None, True])
+def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
+    with pytest.raises(cp.PanelError, match="the sheet thickness is"):
+        cp.build_solid(fitted().shape("N 2"), cast("float", thickness))

@@ -101,6 +101,8 @@ class Feature:
         free = [i for i, number in enumerate(numbers) if number.fixed is None and i not in bound]
         set_(self, "free", np.array(free, dtype=np.intp))
         refuse_dependent(self)
+        if len(patches) > 1 and not curved:
+            raise SettingsError(f"the {len(patches)} planes of '{self.name}' are one, as nothing bends between them")
 
     @property
     def curved(self) -> tuple[bool, ...]:

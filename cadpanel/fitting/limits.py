@@ -23,9 +23,9 @@ STEEPEST = np.radians(30.0)
 # Radius and sweep of a patch keep this share of what they start with, and a sweep stays below half a turn.
 LEAST_SHARE = 0.1
 WIDEST_SWEEP = np.radians(175.0)
-# Slopes of a cut plane against the panel's own frame: flat panels may have corners of 11 degrees, mitres lean less.
-MOST_SKEW = 5.0
-MOST_TILT = 2.0
+# Slopes of a cut plane against the panel's own frame; flat panels may have corners of 11 degrees.
+MOST_SLOPE = 2.0
+MOST_FLAT_SLOPE = 5.0
 LARGEST_RADIUS = 1e7
 """mm; beyond it a patch is flat to within rounding."""
 
@@ -43,13 +43,13 @@ def natural_bounds(layout: Layout, starts: Sequence[Array], length: float) -> tu
         for column, index in enumerate(group.feature.free):
             number = group.feature.numbers[index]
             begun = np.array([start[group.panels, column] for start in starts])
-            low, high = _natural(number, begun, length)
+            low, high = _natural(number, begun, length, flat=not any(group.feature.curved))
             lower[group.panels, column] = number.lower if np.isfinite(number.lower) else np.minimum(low, number.upper)
             upper[group.panels, column] = number.upper if np.isfinite(number.upper) else np.maximum(high, number.lower)
     return lower, upper
 
 
-def _natural(number: Number, begun: Array, length: float) -> tuple[Array, Array]:
+def _natural(number: Number, begun: Array, length: float, *, flat: bool) -> tuple[Array, Array]:
     """(n,) bounds of one number of n panels, from what it starts with (starts, n)."""
     what = number.name.rpartition(" ")[2]
     free = np.full(begun.shape[1], np.inf)
@@ -63,6 +63,6 @@ def _natural(number: Number, begun: Array, length: float) -> tuple[Array, Array]
         most = WIDEST_SWEEP if what == "sweep" else LARGEST_RADIUS / length
         return np.where(sign < 0.0, -most, least), np.where(sign < 0.0, -least, most)
     if number.name.startswith("cut") and what in ("skew", "tilt"):
-        most = np.full(begun.shape[1], MOST_SKEW if what == "skew" else MOST_TILT)
+        most = np.full(begun.shape[1], MOST_FLAT_SLOPE if flat else MOST_SLOPE)
         return -most, most
     return -free, free

@@ -77,7 +77,7 @@ class FitResult:
             far = int(m.max_deviation.argmax())
             return (
                 f"the largest deviation of {allowed:g} mm is not met: panel '{self.reference.panels[far].name}' is "
-                f"{m.max_deviation[far]:.2f} mm away as a {self.shapes[far].feature}, the best that there is; allow "
+                f"{m.max_deviation[far]:.2f} mm away as a {self.shapes[far].feature}, the best that was found; allow "
                 "more, allow wider gaps, or divide it further"
             )
         missed = []

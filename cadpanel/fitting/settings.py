@@ -86,6 +86,9 @@ class FitSettings:
         Raises:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
+        named: object = self.feature
+        if not isinstance(named, str | Feature):
+            raise SettingsError(f"a feature is named, or is a Feature, not {named!r}")
         if not isinstance(self.feature, Feature) and self.feature != AUTO:
             for_corners(self.feature, tilt=self.tilt)
         if self.tilt not in get_args(Tilt):
@@ -104,6 +107,8 @@ class FitSettings:
         require("drift along the strip", self.drift_along, least=1e-4, most=0.5)
         require("drift across the free edges", self.drift_across, least=1e-4, most=0.5)
         require("least radius", self.min_radius, least=0.1, unit=" mm")
+        if isinstance(self.feature, Feature):
+            _require_rollable(self.feature, self.min_radius)
         require_whole("number of restarts", self.restarts, least=0, most=1000)
         require_whole("seed", self.seed, least=0)
         _require_weights(self.weights)
@@ -153,6 +158,18 @@ def require(what: str, value: object, *, least: float, most: float = math.inf, u
     if not math.isfinite(number) or not least <= number <= most:
         span = f"at least {least:g}{unit}" if math.isinf(most) else f"between {least:g}{unit} and {most:g}{unit}"
         raise SettingsError(f"the {what} must be {span}, not {number:g}{unit}")
+
+
+def _require_rollable(feature: Feature, min_radius: float) -> None:
+    """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
+    for number in feature.numbers:
+        if number.name.endswith(": radius"):
+            given = (number.fixed,) if number.fixed is not None else (number.lower, number.upper)
+            if max(abs(value) for value in given) < min_radius:
+                raise SettingsError(
+                    f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
+                    f"radius of {min_radius:g} mm: ask for a larger one, or allow a tighter one"
+                )
 
 
 def _require_weights(value: object) -> None:

@@ -7,6 +7,7 @@ linear in the depth, so what holds on both holds inside. Millimetres and radians
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import Literal, TypeVar, get_args
 
 import numpy as np
@@ -60,10 +61,11 @@ def check_buildable(shape: AnyShape, thickness: float, skin_side: SkinSide = "ou
         PanelError: for the reasons of `check_skin`, on either face of the sheet, or a sheet that is thicker than its
             inner radius allows.
     """
-    if not THINNEST_SHEET <= thickness <= THICKEST_SHEET:
+    given: object = thickness
+    if isinstance(given, bool) or not isinstance(given, Real) or not THINNEST_SHEET <= thickness <= THICKEST_SHEET:
         raise PanelError(
             shape.name,
-            f"the sheet thickness is {thickness} mm; give a number from {THINNEST_SHEET:g} to {THICKEST_SHEET:g}.",
+            f"the sheet thickness is {thickness!r} mm; give a number from {THINNEST_SHEET:g} to {THICKEST_SHEET:g}.",
         )
     if skin_side not in get_args(SkinSide):
         raise PanelError(shape.name, f"the skin side is '{skin_side}'; give {' or '.join(get_args(SkinSide))}.")

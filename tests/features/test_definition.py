@@ -321,3 +321,8 @@ def test_numbers_that_no_panel_has_are_refused(patch, number):
 def test_a_radius_beyond_all_bounds_is_refused(radius):
     with pytest.raises(SettingsError, match=r"^'radius' must be a finite number"):
         Cylinder(radius=radius)
+
+
+def test_two_planes_side_by_side_are_one_even_where_their_numbers_do_not_depend_on_each_other():
+    with pytest.raises(SettingsError, match="the 2 planes of 'plane-plane' are one"):
+        Feature(Plane(width=3.0, turn=0.0), Plane())

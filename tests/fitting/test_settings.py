@@ -8,7 +8,7 @@ import pytest
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import CATALOGUE, feature, polygon
 from cadpanel.features.feature import Feature
-from cadpanel.features.patches import Cone, Plane
+from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.fitting.settings import FitSettings, Weights
 
 NUMBERS = ("gap_tolerance", "drift_along", "drift_across", "restarts", "seed")
@@ -145,3 +145,17 @@ def test_a_largest_deviation_that_is_none_is_refused(value):
     how: dict[str, Any] = {"feature": "auto", "max_deviation": value}
     with pytest.raises(SettingsError, match="largest deviation must be"):
         FitSettings(**how)
+
+
+@pytest.mark.parametrize("radius", [5.0, -5.0, (1.0, 5.0), (-9.0, -2.0)])
+def test_a_radius_tighter_than_the_shop_can_roll_is_refused(radius: Any) -> None:
+    tight = Feature(Plane(), Cylinder(radius=radius), Plane())
+    with pytest.raises(SettingsError, match=r"the radius of patch 1 of .* is tighter than the least radius of 10 mm"):
+        FitSettings(feature=tight)
+    assert FitSettings(feature=tight, min_radius=1.0).feature is tight
+
+
+@pytest.mark.parametrize("feature", [None, 3, ["cylinder"], Plane()])
+def test_what_is_no_feature_is_refused(feature: Any) -> None:
+    with pytest.raises(SettingsError, match="a feature is named, or is a Feature"):
+        FitSettings(feature=feature)

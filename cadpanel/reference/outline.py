@@ -21,10 +21,12 @@ Array = NDArray[np.float64]
 TOUCH_TOLERANCE = 1.0
 TOUCH_PART = 1e-3
 # The outline has a corner where it turns by more than this in the surface, degrees. Where it turns less, but by more
-# than the second, a panel with four clear corners has bent edges, and any other one has a corner there, too.
+# than the second, a curved panel with four clear corners has bent edges, and any other one has a corner there, too.
 CORNER_ANGLE = 30.0
 OBTUSE_CORNER = 5.0
 FOUR = 4
+# A panel is flat where its normals lie within this angle of their mean, degrees.
+FLAT = 0.5
 FEWEST_CORNERS = 3
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6
@@ -208,7 +210,7 @@ def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side,
     """Cut a closed loop of edges into its sides."""
     turns = _turns(loop)
     corners = np.flatnonzero(turns > CORNER_ANGLE).tolist()
-    if len(corners) != FOUR:
+    if len(corners) != FOUR or _is_flat(loop):
         corners = np.flatnonzero(turns > OBTUSE_CORNER).tolist()
     if len(corners) < FEWEST_CORNERS:
         places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners)
@@ -220,6 +222,11 @@ def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side,
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]
     return _sides([turned[start:stop] for start, stop in pairwise(cuts)])
+
+
+def _is_flat(loop: Sequence[Edge]) -> bool:
+    normals = np.concatenate([edge.normals for edge in loop])
+    return bool((normals @ unit(normals.sum(axis=0))).min() >= np.cos(np.radians(FLAT)))
 
 
 def _turns(loop: Sequence[Edge]) -> Array:

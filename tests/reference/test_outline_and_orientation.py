@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import PanelReference, RawPanel
-from tests.reference_shapes import Lip, moved, raw_panel, sampled_face, shuffled
+from tests.reference_shapes import Lip, moved, polygon_face, raw_panel, sampled_face, sheet_of, shuffled
 
 CUTS = ((0.0, 3.0), (0.0, 1.0, 2.0, 3.0), (0.0, 0.4, 1.0, 1.5, 2.0, 2.7, 3.0))
 CLOSE = 1e-6  # mm
@@ -165,3 +165,24 @@ def test_face_without_area_is_refused_by_its_place():
     line = replace(panel.faces[1], points=empty, normals=empty, weights=np.empty(0))
     with pytest.raises(PanelError, match="face 2 of 3 has no area"):
         one(replace(panel, faces=(panel.faces[0], line, panel.faces[2])))
+
+
+def flat_panel(*corners):
+    """A flat panel with these corners (x, y), one edge of it between every two."""
+    face = polygon_face(ROOF, np.array(corners))
+    return assemble([RawPanel(name="flat", faces=(face,))], "roof.step").panels[0]
+
+
+ROOF = sheet_of(lambda x, y: 0.0 * (x + y), width=6000.0, length=6000.0)
+
+
+@pytest.mark.parametrize("rise", [0.1, 0.2, 0.45])
+def test_obtuse_corners_of_a_flat_panel_are_corners(rise):
+    kite = ((0.0, 0.0), (1.0, -rise), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0))
+    assert len(flat_panel(*kite).edges) == 5
+
+
+@pytest.mark.parametrize("slant", [10.0, 22.0, 28.0])
+def test_a_slanted_parallelogram_has_four_corners(slant):
+    reach = 1.0 / np.tan(np.radians(slant))
+    assert flat_panel((0.0, 0.0), (3.0, 0.0), (3.0 + reach, 1.0), (reach, 1.0)).four_sided

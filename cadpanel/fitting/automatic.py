@@ -13,7 +13,6 @@ from cadpanel.fitting.measures import largest_deviations
 from cadpanel.fitting.methods import fit_alone
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.buildable import check_skin
 from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.fold import check_fold
@@ -115,9 +114,7 @@ class Choice:
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
         found = fit_alone(problem, starts, self._settings)
-        deviations = largest_deviations(problem, part, found.unknowns)
-        buildable = [can_be_built(shape) for shape in panel_shapes(problem, part, found.unknowns)]
-        self.deviations[suited, place] = np.where(buildable, deviations, np.inf)
+        self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
         if CHEAPEST_FIRST[place] == POLYGON:

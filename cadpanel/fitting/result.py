@@ -22,7 +22,7 @@ from cadpanel.reference.model import Reference
 Array = NDArray[np.float64]
 
 # How often panels may be given a closer feature because closing the seams took them too far.
-_PROMOTIONS = 5
+_PROMOTIONS = 3
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
 Progress = Callable[[str, int, float], None]
 
@@ -126,15 +126,18 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
     result = _fit(reference, how, choice.features(), began, progress)
     # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better, and those
     # that cannot be built any more another one.
-    for _ in range(_PROMOTIONS):
+    # The last result that can be built stands.
+    buildable: FitResult | None = None
+    for attempt in range(_PROMOTIONS + 1):
         lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
-        if len(lost):
-            if not choice.forbid(lost):
-                break
-        elif result.tolerance_met or not choice.promote(_offenders(result)):
+        if not len(lost):
+            buildable = result
+        if attempt == _PROMOTIONS or (buildable is result and result.tolerance_met):
+            break
+        if not (choice.forbid(lost) if len(lost) else choice.promote(_offenders(result))):
             break
         result = _fit(reference, how, choice.features(), began, progress)
-    return result
+    return buildable or result
 
 
 def _fit(

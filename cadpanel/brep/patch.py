@@ -18,6 +18,7 @@ from scipy.interpolate import PchipInterpolator
 from cadpanel.brep.boundary import Edge, evaluate, sample_edges, unit_normals
 from cadpanel.brep.kernel import TOLERANCE
 from cadpanel.brep.surface_batch import SurfaceBatch
+from cadpanel.brep.trims import sharpen_trims
 
 Array = NDArray[np.float64]
 
@@ -74,7 +75,8 @@ class Patch:
 
 
 def patch_of(face: TopoDS_Face) -> Patch:
-    """Measure a face."""
+    """Measure a face, its border laid along its edges first where it is coarse."""
+    sharpen_trims(face)
     surface = BRepAdaptor_Surface(face)
     side = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
     u_0, u_1, v_0, v_1 = BRepTools.UVBounds_s(face)

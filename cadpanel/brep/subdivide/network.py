@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_INTERNAL
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -21,7 +20,7 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.project import Landing, land
 from cadpanel.brep.sampling import sample_faces
-from cadpanel.brep.split import Pieces, split_faces
+from cadpanel.brep.split import Pieces, length_of, split_faces
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
@@ -107,7 +106,7 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
     for part in FUZZY_PARTS:
         pieces = split_faces(faces, [edge for _, edge in owners], what, part * tolerance)
         cut = _looked_at(pieces, owners)
-        if cut.loose and all(_length(edge) <= tolerance for _, edge in cut.loose):
+        if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
             kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
             pieces = split_faces(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept)
@@ -153,7 +152,7 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cu
         users = _users(around, edge, numbers)
         if len(users) == 2 and users[0] != users[1]:
             links.append((users[0], users[1], TopoDS.Edge_s(edge), hash(edge) in curve_edges))
-    return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -_length(part[1]))))
+    return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))))
 
 
 def _users(around: TopTools_IndexedDataMapOfShapeListOfShape, edge: TopoDS_Shape, numbers: dict[int, int]) -> list[int]:
@@ -175,17 +174,13 @@ def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:
     weights = [np.concatenate([face.weights for face in faces]) for faces in samples]
     middles = np.array([w @ p / w.sum() for w, p in zip(weights, points, strict=True)])
     links = [
-        Link(panels=(int(group[first]), int(group[second])), middle=_middle(edge), length=_length(edge))
+        Link(panels=(int(group[first]), int(group[second])), middle=_middle(edge), length=length_of(edge))
         for first, second, edge, made in cut.links
         if made and group[first] != group[second]
     ]
     names = place_names(name, middles, links)
     order = sorted(range(number), key=lambda place: names[place])
     return tuple(CutPanel(name=names[place], faces=tuple(groups[place])) for place in order)
-
-
-def _length(edge: TopoDS_Shape) -> float:
-    return float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(TopoDS.Edge_s(edge))))
 
 
 def _middle(edge: TopoDS_Shape) -> Array:

@@ -15,6 +15,7 @@ from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
 from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PlanePatchModel
 from cadpanel.delivery.patches import patch_models
+from cadpanel.delivery.records import panel_records
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
@@ -170,3 +171,22 @@ def test_a_strip_of_all_but_cylinders_holds_its_proof(tmp_path: Path) -> None:
     report = deliver(result, tmp_path / "out")
     assert report.summary.max_seam_gap < 0.01
     assert verify(tmp_path / "out").holds
+
+
+def test_an_outline_that_leaves_the_drawings_between_its_corners_is_noted() -> None:
+    result = fitted()
+    quiet = panel_records(result, build_panels(result.shapes, SheetSettings()))
+    assert not any("Between its corners" in note for panel in quiet for note in panel.notes)
+    far = replace(result.measures, hausdorff=result.measures.hausdorff + np.array([0.0, 500.0, 0.0]))
+    noted = panel_records(replace(result, measures=far), build_panels(result.shapes, SheetSettings()))
+    assert [any("Between its corners" in note for note in panel.notes) for panel in noted] == [False, True, False]
+
+
+def test_a_run_that_misses_gaps_and_drifts_names_both() -> None:
+    result = fitted()
+    gaping = replace(result.measures, seam_gap=result.measures.seam_gap + 7.0)
+    both = replace(gaping, drift_across=result.measures.drift_across + 300.0)
+    sentences = [replace(result, measures=m, tolerance_met=False).shortfall() or "" for m in (gaping, both)]
+    assert ["the drift limits are not met" in sentence for sentence in sentences] == [False, True]
+    assert all("the gap tolerance of 1 mm is not met" in sentence for sentence in sentences)
+    assert "choose another feature" in sentences[1]

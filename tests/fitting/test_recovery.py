@@ -11,7 +11,10 @@ from cadpanel.fitting.methods import fit_local
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import ConePatch
+from cadpanel.reference.assemble import assemble
+from cadpanel.reference.model import RawPanel
 from tests.known_panels import alone, flipped, moved, posed, renumbered
+from tests.reference_shapes import polygon_face, sheet_of
 from tests.shapes import folded_panel, random_panel
 
 # Millimetres on panels of 2 m.
@@ -138,3 +141,15 @@ def test_a_panel_without_a_fold_is_refused_by_its_name():
     with pytest.raises(PanelError, match=r"panel 2.*1\.90 degrees"):
         local(alone(random_panel(1), flat))
     local(alone(random_panel(1), folded_panel(sweep=np.radians(2.1))))
+
+
+@pytest.mark.parametrize("slant", [12.0, 22.0, 45.0])
+def test_a_flat_panel_with_acute_corners_is_recovered(slant):
+    """Its cuts lean far against the way along it, which no bound may forbid."""
+    reach = 1.0 / np.tan(np.radians(slant))
+    corners = np.array([(0.0, 0.0), (3.0, 0.0), (3.0 + reach, 1.0), (reach, 1.0)])
+    flat = sheet_of(lambda x, y: 0.0 * (x + y), width=1000.0, length=1000.0)
+    reference = assemble([RawPanel(name="slanted", faces=(polygon_face(flat, corners),))], "flat.step")
+    _, measures = local(reference, feature="planar-quadrilateral")
+    assert measures.drift.max() <= RECOVERED
+    assert measures.hausdorff.max() <= RECOVERED

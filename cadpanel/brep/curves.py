@@ -3,35 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_C1
 from OCP.Standard import Standard_Failure
-from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS, TopoDS_Edge
 
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Model, ModelCurve
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import unit
 
 Array = NDArray[np.float64]
 
 POINTS = 257
-# Points for every span of a spline that waves more often than that many can follow, and at most.
-POINTS_A_SPAN = 16
-MOST_POINTS = 4097
-# A curve has a kink where its direction changes by more than this, degrees, seen from this part of it before and after;
-# polylines that stand for round curves turn by less at each of their points.
-LEAST_KINK = 5.0
-BESIDE = 1e-6
 # How closely one curve must begin where another one ends to follow it, as a part of the whole length.
 FOLLOWS = 1e-3
 
@@ -107,42 +96,6 @@ def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Cur
         if np.ptp(points, axis=0).max() > 0.0:
             curves.append(Curve(number=number, name=curve.label.name, edge=edge, points=points))
     return tuple(curves)
-
-
-def smooth_pieces(curves: Sequence[Curve]) -> tuple[Curve, ...]:
-    """The same curves, each cut at its kinks, with points as dense as its knots: a cut must turn where they turn."""
-    pieces = []
-    for curve in curves:
-        adaptor = BRepAdaptor_Curve(curve.edge)
-        knots = adaptor.NbKnots() if adaptor.GetType() == GeomAbs_BSplineCurve else 2
-        kinks = _kinks(adaptor)
-        if not kinks and knots * POINTS_A_SPAN <= POINTS:
-            pieces.append(curve)
-            continue
-        count = int(np.clip(knots * POINTS_A_SPAN, POINTS, MOST_POINTS))
-        for low, high in pairwise((adaptor.FirstParameter(), *kinks, adaptor.LastParameter())):
-            points = np.array([adaptor.Value(place).Coord() for place in np.linspace(low, high, count).tolist()])
-            pieces.append(replace(curve, points=points))
-    return tuple(pieces)
-
-
-def _kinks(adaptor: BRepAdaptor_Curve) -> list[float]:
-    """Parameters inside a curve at which its direction jumps."""
-    count = adaptor.NbIntervals(GeomAbs_C1)
-    if count < 2:
-        return []
-    found = TColStd_Array1OfReal(1, count + 1)
-    adaptor.Intervals(found, GeomAbs_C1)
-    beside = BESIDE * (adaptor.LastParameter() - adaptor.FirstParameter())
-    kinks = []
-    for place in (found.Value(index) for index in range(2, count + 1)):
-        ways = []
-        for side in (-1.0, 1.0):
-            start, end = (np.array(adaptor.Value(place + side * step * beside).Coord()) for step in (1.0, 2.0))
-            ways.append(unit(side * (end - start)))
-        if ways[0] @ ways[1] < np.cos(np.radians(LEAST_KINK)):
-            kinks.append(place)
-    return kinks
 
 
 def chain(polylines: Sequence[Array]) -> Array | None:

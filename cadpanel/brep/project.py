@@ -32,7 +32,7 @@ SMALL_STEP = 1e-12
 # A foot this close to the border of the parameter range lies on it, as a part of the range.
 ON_BORDER = 1e-9
 # Numbers of points that are tried in turn until the curve through them is as close as CLOSE, mm, between them.
-COUNTS = (9, 17, 33, 65, 129, 257, 513, 1025)
+COUNTS = (9, 17, 33, 65, 129)
 CLOSE = 1e-3
 FEWEST_POINTS = 4
 # A jump of more than this part of the parameter range goes over the seam of a closed surface.
@@ -225,8 +225,6 @@ def _edge(patch: Patch, line: Array) -> TopoDS_Edge:
         spline = make_interp_spline(places, whole(places), k=degree)
         if norm(patch.points(np.asarray(spline(reached))) - points).max() <= CLOSE:
             break
-    else:
-        spline = whole
     edge = BRepBuilderAPI_MakeEdge(spline_curve(spline), geometry(patch)).Edge()
     BRepLib.BuildCurves3d_s(edge)
     return edge

@@ -3,12 +3,11 @@ import re
 import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
-from OCP.Geom import Geom_BezierCurve, Geom_BSplineCurve
+from OCP.Geom import Geom_BezierCurve
 from OCP.GeomAbs import GeomAbs_C2
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
 from OCP.gp import gp_Pln, gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 
 from cadpanel.brep.model import compound_of
 from cadpanel.brep.read import read_raw_panels, read_reference
@@ -349,41 +348,3 @@ def test_names_of_a_ring_go_round():
     numbers = [int(name[-2:]) for name in names]
     steps = {(numbers[(k + 1) % 6] - numbers[k]) % 6 for k in range(6)}
     assert steps in ({1}, {5})
-
-
-def drawn(tmp_path, points):
-    """A flat face of 6 m by 2 m, cut along one polyline of the degree-1 kind that programs export."""
-    poles = TColgp_Array1OfPnt(1, len(points))
-    knots, counts = TColStd_Array1OfReal(1, len(points)), TColStd_Array1OfInteger(1, len(points))
-    for place, (x, y) in enumerate(points, start=1):
-        poles.SetValue(place, gp_Pnt(float(x), float(y), 0.0))
-        knots.SetValue(place, float(place))
-        counts.SetValue(place, 2 if place in (1, len(points)) else 1)
-    line = BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, knots, counts, 1)).Edge()
-    face = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 6000.0, 0.0, 2000.0).Face()
-    path = write_shape(tmp_path / "flat.brep", face)
-    network = write_shape(tmp_path / "line.brep", line)
-    return path, ReferenceSettings(unit="mm", network=network)
-
-
-def test_a_curve_with_corners_is_cut_where_it_is_drawn(tmp_path):
-    turns = np.array([[3000.0, 1000.0, 0.0], [4500.0, 1000.0, 0.0]])
-    found = read_reference(*drawn(tmp_path, [(3000.0, 0.0), *turns[:, :2], (4500.0, 2000.0)]))
-    assert [len(panel.edges) for panel in found.panels] == [6, 6]
-    assert len(found.seams) == 3
-    for panel in found.panels:
-        for turn in turns:
-            assert np.linalg.norm(panel.corners - turn, axis=1).min() <= 1e-3
-
-
-@pytest.mark.parametrize("periods", [2, 5])
-def test_a_polyline_that_stands_for_a_wave_is_cut_where_it_is_drawn(tmp_path, periods):
-    t = np.linspace(0.0, 1.0, 4001)
-    line = np.stack([3000.0 + 100.0 * np.sin(2.0 * np.pi * periods * t), 2000.0 * t], axis=1)
-    panels = read_raw_panels(*drawn(tmp_path, line)).panels
-    assert len(panels) == 2
-    edges = [edge for panel in panels for face in panel.faces for edge in face.edges]
-    cuts = [edge for edge in edges if np.abs(edge[:, 0] - 3000.0).max() < 200.0]
-    assert len(cuts) == 2
-    for cut in cuts:
-        assert np.abs(cut[:, 0] - np.interp(cut[:, 1], line[:, 1], line[:, 0])).max() <= 0.05

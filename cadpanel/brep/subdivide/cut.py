@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.brep.connect import Surface
-from cadpanel.brep.curves import Curve, load_curves, sampled, smooth_pieces
+from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
@@ -88,9 +88,9 @@ def _network(skin: _Skin) -> Cut:
         curves = sampled(skin.model.curves(), file.name, np.zeros(3))
         if not curves:
             raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
-        return _cut_by_curves(skin, smooth_pieces(curves), file.name, DRAW_ON)
+        return _cut_by_curves(skin, curves, file.name, DRAW_ON)
     found = load_curves(file, skin.model, skin.settings.millimetres)
-    return _cut_by_curves(skin, smooth_pieces(found.curves), file.name, DRAW_ON, found.notes)
+    return _cut_by_curves(skin, found.curves, file.name, DRAW_ON, found.notes)
 
 
 def _mesh(skin: _Skin) -> Cut:
@@ -108,10 +108,9 @@ def _cut_by_curves(
     """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
     tolerance = skin.settings.seam_tolerance
     landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
-    landed = {curve.called for i, curve in enumerate(curves) if any(landing.edges[i] for landing in landings)}
-    stray = [curve.called for curve in curves if curve.called not in landed]
+    stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:
-        called = stray[0]
+        called = stray[0].called
         raise ReferenceFileError(
             f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': "
             f"{remedy}."

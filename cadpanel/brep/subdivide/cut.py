@@ -11,10 +11,11 @@ import numpy as np
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
+from cadpanel.brep.project import land_curves
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
 from cadpanel.brep.subdivide.mesh import load_mesh, require_all_panels
-from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
+from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.brep.subdivide.stations import cut_stations
 from cadpanel.errors import ReferenceFileError, SettingsError
@@ -106,20 +107,24 @@ def _mesh(skin: _Skin) -> Cut:
 def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str) -> Cut:
     """Cut every surface by the curves that lie over it, and refuse a curve that lies over none."""
     tolerance = skin.settings.seam_tolerance
-    landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
+    source = skin.model.source
+    surfaces = skin.surfaces
+    landings = land_curves(surfaces, curves, tolerance, curve_source)
     stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:
         called = stray[0].called
         raise ReferenceFileError(
-            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': take "
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{source}': take "
             "it out, or draw it on the surface."
         )
     panels: list[CutPanel] = []
-    for surface, landing in zip(skin.surfaces, landings, strict=True):
-        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, tolerance)
-    farthest = max(landing.offset for landing in landings)
-    notes = (f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it.",)
-    return Cut(panels=tuple(panels), notes=notes if farthest > WORTH_A_NOTE else ())
+    for whole, surface, landing in zip(skin.surfaces, surfaces, landings, strict=True):
+        what = f"the surface of {whole.numbers} of '{source}'"
+        panels += cut_network(surface, curves, landing, what, curve_source, tolerance)
+    farthest, offset = max(enumerate(landing.offset for landing in landings), key=lambda landed: landed[1])
+    off = "the surface" if len(landings) == 1 else f"the surface of {skin.surfaces[farthest].numbers}"
+    notes = (f"The curves of '{curve_source}' lie up to {offset:.3g} mm off {off} and were projected onto it.",)
+    return Cut(panels=tuple(panels), notes=notes if offset > WORTH_A_NOTE else ())
 
 
 WAYS: dict[str, Callable[[_Skin], Cut]] = {

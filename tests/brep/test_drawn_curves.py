@@ -15,12 +15,12 @@ from cadpanel.brep.connect import surfaces_of
 from cadpanel.brep.curves import sampled
 from cadpanel.brep.model import Label, Model, ModelCurve, Part, compound_of
 from cadpanel.brep.project import land_curves
-from cadpanel.brep.read import read_raw_panels
+from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.select import select_faces
 from cadpanel.brep.smooth import CLOSE
 from cadpanel.brep.split import _enclosed
 from cadpanel.brep.subdivide.network import cut_network
-from cadpanel.errors import ReferenceFileError
+from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import write_shape
@@ -142,6 +142,27 @@ def test_cut_along_a_wave_keeps_to_it(tmp_path, periods):
 def test_smooth_curve_is_one_edge_with_few_points():
     (piece,) = sampled([ModelCurve(label=Label(), edge=wave(1))], "lines", np.zeros(3))[0].pieces
     assert len(piece.points) <= 300
+
+
+def test_curve_lands_on_the_nearer_of_two_layers_and_on_both_from_midway(tmp_path):
+    layers = compound_of([plate(), plate(50.0)])
+    for height, names in ((50.0, 3), (48.0, 3), (25.2, 4)):
+        found = raw(tmp_path, layers, [line((3000, 0, height), (3000, WIDTH, height))])
+        assert len(found.panels) == names
+        notes = [note for note in found.notes if "mm off" in note]
+        assert len(notes) == (height != 50.0)
+        assert all(f"off the surface of face {1 if height == 25.2 else 2} " in note for note in notes)
+
+
+def test_closed_curve_cuts_out_a_panel_and_what_is_left_is_refused_for_its_hole(tmp_path):
+    panels = cut([plate()], [circle((3000.0, 1000.0, 0.0), 500.0)])
+    disc = np.pi * 500.0**2
+    assert areas(panels) == pytest.approx([disc, LENGTH * WIDTH - disc], rel=SAME_AREA)
+    square = [(2500, 500, 0), (3500, 500, 0), (3500, 1500, 0), (2500, 1500, 0), (2500, 500, 0)]
+    raw(tmp_path, plate(), [polyline(*square)])
+    settings = ReferenceSettings(unit="mm", network=tmp_path / "lines.brep")
+    with pytest.raises(PanelError, match=r"Panel 'S1-\d\d': .* outline has 2 loops .* close its holes"):
+        read_reference(tmp_path / "skin.brep", settings)
 
 
 def test_curve_that_runs_on_beyond_the_joint_of_two_faces_parts_them(tmp_path):

@@ -3,22 +3,23 @@
 import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
-from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakePrism, BRepPrimAPI_MakeSphere
 from OCP.Geom import Geom_BSplineCurve
 from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt, gp_Vec
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep import lay
 from cadpanel.brep.clean import skin_faces
 from cadpanel.brep.connect import surfaces_of
 from cadpanel.brep.curves import sampled
-from cadpanel.brep.model import Label, Model, ModelCurve, Part, compound_of
+from cadpanel.brep.model import Label, Model, ModelCurve, Part, compound_of, shapes_of
 from cadpanel.brep.project import land_curves
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.select import select_faces
 from cadpanel.brep.smooth import CLOSE
-from cadpanel.brep.split import _enclosed
+from cadpanel.brep.split import _enclosed, area_of
 from cadpanel.brep.subdivide.network import cut_network
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.polyline import distances_to_polylines
@@ -163,6 +164,48 @@ def test_closed_curve_cuts_out_a_panel_and_what_is_left_is_refused_for_its_hole(
     settings = ReferenceSettings(unit="mm", network=tmp_path / "lines.brep")
     with pytest.raises(PanelError, match=r"Panel 'S1-\d\d': .* outline has 2 loops .* close its holes"):
         read_reference(tmp_path / "skin.brep", settings)
+
+
+def tube():
+    return max(shapes_of(BRepPrimAPI_MakeCylinder(500.0, 3000.0).Shape(), TopAbs_FACE), key=area_of)
+
+
+def generator(angle):
+    x, y = 500.0 * np.cos(angle), 500.0 * np.sin(angle)
+    return line((x, y, -5.0), (x, y, 3005.0))
+
+
+@pytest.mark.parametrize(
+    ("heights", "angles", "count"),
+    [
+        ((1000.0, 2000.0), (0.5, 2.5, 4.5), 9),
+        ((1500.0,), (0.0, 2.0, 4.0), 6),
+        ((), (0.5, 2.5, 4.5), 3),
+        ((), (0.0, 2.0), 2),
+    ],
+)
+def test_circles_and_generators_cut_a_whole_cylinder(tmp_path, heights, angles, count):
+    curves = [*(circle((0.0, 0.0, z), 500.0) for z in heights), *map(generator, angles)]
+    found = raw(tmp_path, tube(), curves)
+    assert len(found.panels) == count
+    turns = np.diff([*angles, angles[0] + 2.0 * np.pi])
+    bands = np.diff([0.0, *heights, 3000.0])
+    wanted = sorted(500.0 * turn * band for turn in turns for band in bands)
+    weights = sorted(sum(face.weights.sum() for face in panel.faces) for panel in found.panels)
+    assert weights == pytest.approx(wanted, rel=1e-4)
+    reference = read_reference(tmp_path / "skin.brep", ReferenceSettings(unit="mm", network=tmp_path / "lines.brep"))
+    assert len(reference.panels) == count
+
+
+def test_great_circles_cut_a_whole_sphere_into_octants(tmp_path):
+    sphere = max(shapes_of(BRepPrimAPI_MakeSphere(500.0).Shape(), TopAbs_FACE), key=area_of)
+    circles = [
+        BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(*axis)), 500.0)).Edge()
+        for axis in ((0.0, 0.0, 1.0), (1.0, 0.2, 0.0), (-0.2, 1.0, 0.0))
+    ]
+    panels = raw(tmp_path, sphere, circles).panels
+    weights = [sum(face.weights.sum() for face in panel.faces) for panel in panels]
+    assert weights == pytest.approx(8 * [0.5 * np.pi * 500.0**2], rel=1e-3)
 
 
 def test_curve_that_runs_on_beyond_the_joint_of_two_faces_parts_them(tmp_path):

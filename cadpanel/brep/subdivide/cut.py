@@ -17,6 +17,7 @@ from cadpanel.brep.subdivide.lengths import cut_lengths
 from cadpanel.brep.subdivide.mesh import load_mesh, require_all_panels
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.seam import opened
 from cadpanel.brep.subdivide.stations import cut_stations
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
@@ -108,7 +109,7 @@ def _cut_by_curves(skin: _Skin, curves: Sequence[Curve], curve_source: str) -> C
     """Cut every surface by the curves that lie over it, and refuse a curve that lies over none."""
     tolerance = skin.settings.seam_tolerance
     source = skin.model.source
-    surfaces = skin.surfaces
+    surfaces = [opened(surface, source) for surface in skin.surfaces]
     landings = land_curves(surfaces, curves, tolerance, curve_source)
     stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:

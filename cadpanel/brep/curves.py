@@ -9,30 +9,43 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS, TopoDS_Edge
 
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Model, ModelCurve
+from cadpanel.brep.smooth import Piece, piece_through, smooth_pieces
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
 
-POINTS = 257
 # How closely one curve must begin where another one ends to follow it, as a part of the whole length.
 FOLLOWS = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curve:
-    """A curve of a file: its place there (from 1), its edge, and (q, 3) points along it, mm."""
+    """A curve of a file.
+
+    Attributes:
+        number: its place there, from 1.
+        name: as the file has it.
+        edge: the kernel's edge.
+        points: (q, 3) along it, mm.
+        parts: its smooth pieces; none where it is the smooth curve through its points.
+    """
 
     number: int
     name: str
     edge: TopoDS_Edge
     points: Array
+    parts: tuple[Piece, ...] = ()
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Its smooth pieces, each of which begins where the one before it ends."""
+        return self.parts or (piece_through(self.points),)
 
     @property
     def called(self) -> str:
@@ -84,17 +97,16 @@ def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Cur
             continue
         edge = TopoDS.Edge_s(shifted(curve.edge, tuple(shift.tolist()))) if shift.any() else curve.edge
         try:
-            adaptor = BRepAdaptor_Curve(edge)
-            places = np.linspace(adaptor.FirstParameter(), adaptor.LastParameter(), POINTS)
-            points = np.array([adaptor.Value(place).Coord() for place in places.tolist()])
+            pieces = smooth_pieces(edge)
         except Standard_Failure as error:
             raise ReferenceFileError(
                 f"Curve {number} of '{source}' cannot be evaluated by the CAD kernel ({error}): redraw it."
             ) from error
+        points = np.concatenate([pieces[0].points, *(piece.points[1:] for piece in pieces[1:])])
         if not np.isfinite(points).all():
             raise ReferenceFileError(f"Curve {number} of '{source}' has points that are not numbers: redraw it.")
         if np.ptp(points, axis=0).max() > 0.0:
-            curves.append(Curve(number=number, name=curve.label.name, edge=edge, points=points))
+            curves.append(Curve(number=number, name=curve.label.name, edge=edge, points=points, parts=pieces))
     return tuple(curves)
 
 

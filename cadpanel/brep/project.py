@@ -1,8 +1,4 @@
-"""Curves near a surface, brought onto its faces as curves of their parameter planes.
-
-Every point goes to its nearest point on the surface by Newton's method, all points at once. (The kernel's own
-projection of curves fails on some surfaces without a word.)
-"""
+"""Curves near surfaces, brought onto the faces that they are nearest to as curves of their parameter planes."""
 
 from __future__ import annotations
 
@@ -11,45 +7,39 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-from OCP.BRepLib import BRepLib
+from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.TopAbs import TopAbs_OUT
 from OCP.TopoDS import TopoDS_Edge
-from scipy.interpolate import make_interp_spline
-from scipy.spatial import cKDTree
 
+from cadpanel.brep import kernel
 from cadpanel.brep.boundary import evaluate
+from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.connect import Surface
-from cadpanel.brep.patch import Patch, geometry
-from cadpanel.brep.slices import DEGREE, spline_curve
+from cadpanel.brep.curves import Curve
+from cadpanel.brep.feet import Feet, Search
+from cadpanel.brep.lay import Stretch, lay
+from cadpanel.brep.patch import Patch
+from cadpanel.brep.smooth import CLOSE, Piece, piece_through
+from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
 
-# Grid lines each way from which the nearest point of a patch is looked for, and steps of Newton's method from there.
-GRID = 41
-STEPS = 20
-SMALL_STEP = 1e-12
-# A foot this close to the border of the parameter range lies on it, as a part of the range.
-ON_BORDER = 1e-9
-# Numbers of points that are tried in turn until the curve through them is as close as CLOSE, mm, between them.
-COUNTS = (9, 17, 33, 65, 129)
-CLOSE = 1e-3
-FEWEST_POINTS = 4
+# A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
+NEAR_PART = 0.01
+NEAR = 10.0
 # A jump of more than this part of the parameter range goes over the seam of a closed surface.
 JUMP = 0.5
+# A curve lies nearer to another face mostly where that holds for more than this part of its points.
+MOSTLY = 0.5
 # Halvings by which the place is found where a curve leaves a face.
 HALVINGS = 40
 # A stretch along a border shorter than this many tolerances is where a curve crosses it.
 LONG_STRETCH = 10.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Feet:
-    """Nearest points on a patch: (m, 2) parameters, (m,) distances in mm, and (m,) whether each is on the border."""
-
-    parameters: Array
-    distances: Array
-    on_border: NDArray[np.bool_]
+# A stretch shorter than this is a touch, mm.
+TOUCH = 1e-6
+# Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
+INSIDE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,99 +55,148 @@ class Landing:
     offset: float
 
 
-def land(surface: Surface, curves: Sequence[Array], reach: float, tolerance: float) -> Landing:
-    """Bring curves onto a surface.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Over:
+    """A stretch of a curve over a face, and whether it mostly lies nearer to another face."""
+
+    stretch: Stretch
+    apart: bool
+
+
+def land(surface: Surface, lines: Sequence[Array], reach: float, tolerance: float) -> Landing:
+    """Bring smooth curves through points onto a surface.
 
     Args:
         surface: onto which.
-        curves: (q, 3) points along each, close enough that straight lines between them follow it, mm.
+        lines: (q, 3) points along each, mm.
         reach: how far off the surface a curve may lie, mm; what is farther away does not pass over it.
         tolerance: a curve that ends this close to the border of a face, or runs along it, reaches it, mm.
+
+    Raises:
+        ReferenceFileError: a curve cannot be followed on a face.
     """
-    if not curves:
-        return Landing(edges=(), offset=0.0)
-    edges: list[list[TopoDS_Edge]] = [[] for _ in curves]
-    offset = 0.0
-    sizes = [len(curve) for curve in curves]
-    starts = np.concatenate([[0], np.cumsum(sizes)]).tolist()
-    points = np.concatenate(curves)
-    for face in surface.faces:
-        search = _Search(face.patch)
+    pieces = [(index, piece_through(line)) for index, line in enumerate(lines)]
+    return _landings([surface], [reach], pieces, [f"cut {index + 1}" for index in range(len(lines))], tolerance)[0]
+
+
+def land_curves(
+    surfaces: Sequence[Surface], curves: Sequence[Curve], tolerance: float, curve_source: str
+) -> tuple[Landing, ...]:
+    """Bring the curves of a file onto the surfaces that they pass over, each onto the faces that it is nearest to.
+
+    Args:
+        surfaces: onto which.
+        curves: of which all points within a part of a surface's size pass over it.
+        tolerance: as above; and a curve lands on several faces on top of each other where it lies equally near to
+            them to within this, mm.
+        curve_source: the name of the curves' file, for messages.
+
+    Raises:
+        ReferenceFileError: a curve cannot be followed on a face.
+    """
+    pieces = [(index, piece) for index, curve in enumerate(curves) for piece in curve.pieces]
+    reaches = [max(NEAR, NEAR_PART * surface.size) for surface in surfaces]
+    return _landings(surfaces, reaches, pieces, [f"{curve.called} of '{curve_source}'" for curve in curves], tolerance)
+
+
+def _landings(
+    surfaces: Sequence[Surface],
+    reaches: Sequence[float],
+    pieces: Sequence[tuple[int, Piece]],
+    names: Sequence[str],
+    tolerance: float,
+) -> tuple[Landing, ...]:
+    """What is left on each surface by pieces, each with the index of its curve, of curves with names for messages."""
+    if not pieces:
+        return tuple(Landing(edges=(), offset=0.0) for _ in surfaces)
+    faces = [(place, face) for place, surface in enumerate(surfaces) for face in surface.faces]
+    found = _over(faces, reaches, pieces, tolerance)
+    # Where no face is the nearest one for most of a curve, all of them count.
+    landed = {over.stretch.curve for overs in found for over in overs if not over.apart}
+    edges: list[list[list[TopoDS_Edge]]] = [[[] for _ in names] for _ in surfaces]
+    offsets = [0.0 for _ in surfaces]
+    for (place, face), overs in zip(faces, found, strict=True):
+        kept = [over.stretch for over in overs if not (over.apart and over.stretch.curve in landed)]
+        for stretch, edge in zip(kept, lay(face.patch, kept), strict=True):
+            if edge is None:
+                called = names[stretch.curve]
+                raise ReferenceFileError(
+                    f"{called[:1].upper()}{called[1:]} cannot be followed to within {CLOSE:g} mm on face "
+                    f"{face.number}: draw it onto the face, and part it where the face has a crease."
+                )
+            edges[place][stretch.curve].append(edge)
+            offsets[place] = max(offsets[place], stretch.offset)
+    return tuple(
+        Landing(edges=tuple(map(tuple, own)), offset=offset) for own, offset in zip(edges, offsets, strict=True)
+    )
+
+
+def _over(
+    faces: Sequence[tuple[int, SkinFace]],
+    reaches: Sequence[float],
+    pieces: Sequence[tuple[int, Piece]],
+    tolerance: float,
+) -> list[list[_Over]]:
+    """The stretches over each face; a face comes with the place of its surface's reach."""
+    points = np.concatenate([piece.points for _, piece in pieces])
+    starts = np.cumsum([0, *(len(piece.points) for _, piece in pieces)]).tolist()
+    nearest = np.full(len(points), np.inf)
+    found = []
+    for place, face in faces:
+        search = Search(face.patch)
         feet = search.feet(points)
-        for index, curve in enumerate(curves):
-            own = slice(starts[index], starts[index + 1])
-            found = Feet(parameters=feet.parameters[own], distances=feet.distances[own], on_border=feet.on_border[own])
-            for line, off in _stretches(search, curve, found, reach, tolerance):
-                edges[index].append(_edge(face.patch, line))
-                offset = max(offset, off)
-    return Landing(edges=tuple(tuple(parts) for parts in edges), offset=offset)
-
-
-class _Search:
-    """Finds nearest points on one patch."""
-
-    def __init__(self, patch: Patch) -> None:
-        self.patch = patch
-        parts = np.linspace(0.0, 1.0, GRID)
-        self._parameters = patch.at(0, np.repeat(parts, GRID), np.tile(parts, GRID))
-        self._tree = cKDTree(patch.points(self._parameters))
-
-    def feet(self, points: Array, start: Array | None = None) -> Feet:
-        """The feet of (m, 3) points, looked for from (m, 2) `start`, or from the nearest of a grid."""
-        patch = self.patch
-        uv = self._parameters[self._tree.query(points)[1]] if start is None else start.copy()
-        low, high = patch.bounds[:, 0], patch.bounds[:, 1]
-        for _ in range(STEPS):
-            feet, along_u, along_v = evaluate(patch.surface, uv)
-            step = _newton(points - feet, along_u, along_v)
-            # A parameter on the border that wants to go beyond it stays there, and the other one moves alone.
-            blocked = np.asarray(((uv <= low) & (step < 0.0)) | ((uv >= high) & (step > 0.0)))
-            step = np.where(np.any(blocked, axis=1)[:, None], _alone(points - feet, along_u, along_v, blocked), step)
-            new = np.clip(uv + step, low, high)
-            moved = np.abs(new - uv).max(initial=0.0)
-            uv = new
-            if moved <= SMALL_STEP * np.ptp(patch.bounds):
-                break
-        margin = ON_BORDER * (high - low)
-        on_border = np.asarray(np.any((uv <= low + margin) | (uv >= high - margin), axis=1), dtype=np.bool_)
-        return Feet(
-            parameters=uv,
-            distances=norm(points - patch.points(uv)),
-            on_border=on_border,
-        )
-
-
-def _newton(away: Array, along_u: Array, along_v: Array) -> Array:
-    """The step in both parameters that brings the feet nearest, as if the surface were flat: (m, 2)."""
-    e, f, g = (np.sum(a * b, axis=1) for a, b in ((along_u, along_u), (along_u, along_v), (along_v, along_v)))
-    p, q = np.sum(away * along_u, axis=1), np.sum(away * along_v, axis=1)
-    determinant = np.maximum(e * g - f * f, np.finfo(float).tiny)
-    return np.stack([(g * p - f * q) / determinant, (e * q - f * p) / determinant], axis=1)
-
-
-def _alone(away: Array, along_u: Array, along_v: Array, blocked: NDArray[np.bool_]) -> Array:
-    """The step in the parameter that is not blocked."""
-    steps = [
-        np.sum(away * along, axis=1) / np.maximum(np.sum(along * along, axis=1), np.finfo(float).tiny)
-        for along in (along_u, along_v)
+        inside = np.ones(len(points), dtype=np.bool_) if len(faces) == 1 else _in_face(face.patch, feet, reaches[place])
+        nearest = np.minimum(nearest, np.where(inside, feet.distances, np.inf))
+        stretches = []
+        for (index, piece), start, stop in zip(pieces, starts[:-1], starts[1:], strict=True):
+            own = Feet(
+                parameters=feet.parameters[start:stop],
+                distances=feet.distances[start:stop],
+                on_border=feet.on_border[start:stop],
+            )
+            for first, last, stretch in _stretches(search, index, piece, own, reaches[place], tolerance):
+                where = start + first + np.flatnonzero(inside[start + first : start + last + 1])
+                stretches.append((stretch, where, feet.distances[where]))
+        found.append(stretches)
+    return [
+        [
+            _Over(
+                stretch=stretch,
+                apart=bool(np.count_nonzero(distances > nearest[where] + tolerance) > MOSTLY * len(where)),
+            )
+            for stretch, where, distances in stretches
+        ]
+        for stretches in found
     ]
-    return np.where(blocked, 0.0, np.stack(steps, axis=1))
 
 
-def _stretches(search: _Search, curve: Array, feet: Feet, reach: float, tolerance: float) -> list[tuple[Array, float]]:
-    """The stretches of a curve over a patch: (k, 2) parameters along each, and its largest offset, mm."""
+def _in_face(patch: Patch, feet: Feet, reach: float) -> NDArray[np.bool_]:
+    """Which feet lie on the face, and not only on its surface beyond the border."""
+    inside = np.asarray(feet.distances <= reach, dtype=np.bool_)
+    if not patch.whole:
+        test = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds, axis=1).min()))
+        for place in np.flatnonzero(inside).tolist():
+            inside[place] = test.Perform(kernel.point_2d(*feet.parameters[place].tolist())) != TopAbs_OUT
+    return inside
+
+
+def _stretches(
+    search: Search, index: int, piece: Piece, feet: Feet, reach: float, tolerance: float
+) -> list[tuple[int, int, Stretch]]:
+    """The stretches of a piece over a patch, each with the first and last of its points."""
     found = []
     inside = (feet.distances <= reach) & ~feet.on_border
-    for first, last in _runs(inside, feet.parameters, search.patch):
-        line = feet.parameters[first : last + 1]
-        before = _end(search, curve, feet, first, -1, tolerance)
-        after = _end(search, curve, feet, last, 1, tolerance)
-        found.append((np.concatenate([before, line, after]), float(feet.distances[first : last + 1].max())))
     beside = (feet.distances <= tolerance) & feet.on_border
-    for first, last in _runs(beside, feet.parameters, search.patch):
-        line = feet.parameters[first : last + 1]
-        if norm(np.diff(search.patch.points(line), axis=0)).sum() > LONG_STRETCH * tolerance:
-            found.append((line, float(feet.distances[first : last + 1].max())))
+    for chosen, along, shortest in ((inside, False, TOUCH), (beside, True, LONG_STRETCH * tolerance)):
+        for first, last in _runs(chosen, feet.parameters, search.patch):
+            before, after = (
+                _end(search, piece, feet, end, side, tolerance, along) for end, side in ((first, -1), (last, 1))
+            )
+            places = np.concatenate([before[:, 0], piece.parameters[first : last + 1], after[:, 0]])
+            line = np.concatenate([before[:, 1:], feet.parameters[first : last + 1], after[:, 1:]])
+            if norm(np.diff(search.patch.points(line), axis=0)).sum() > shortest:
+                offset = float(feet.distances[first : last + 1].max())
+                found.append((first, last, Stretch(curve=index, piece=piece, places=places, line=line, offset=offset)))
     return found
 
 
@@ -173,34 +212,46 @@ def _runs(chosen: NDArray[np.bool_], parameters: Array, patch: Patch) -> list[tu
     return list(zip(places[firsts].tolist(), places[lasts].tolist(), strict=True))
 
 
-def _end(search: _Search, curve: Array, feet: Feet, place: int, side: int, tolerance: float) -> Array:
-    """What to add to a stretch at one end, so that it reaches the border where the curve does: (0 or 1, 2)."""
+def _end(search: Search, piece: Piece, feet: Feet, place: int, side: int, tolerance: float, along: bool) -> Array:
+    """What to add to a stretch at one end, so that it reaches the border where the curve does.
+
+    A stretch `along` a border goes on to where the curve leaves that.
+
+    Returns:
+        (0 or 1, 3) the parameter of the piece, none where it is drawn on, and the two of the patch.
+    """
     bounds = search.patch.bounds
     other = place + side
-    if 0 <= other < len(curve):
-        inner, outer, start = curve[place], curve[other], feet.parameters[place : place + 1]
+    if 0 <= other < len(piece.points):
+        inner, outer, start = piece.parameters[place], piece.parameters[other], feet.parameters[place : place + 1]
         for _ in range(HALVINGS):
             middle = 0.5 * (inner + outer)
-            foot = search.feet(middle[None], start)
-            if foot.on_border[0]:
-                outer = middle
-            else:
+            foot = search.feet(piece.at(np.array([middle])), start)
+            on = bool(foot.on_border[0]) and (not along or bool(foot.distances[0] <= tolerance))
+            if on == along:
                 inner, start = middle, foot.parameters
-        end = search.feet(outer[None], start).parameters[0]
+            else:
+                outer = middle
+        outer = inner if along else outer
+        end = search.feet(piece.at(np.array([outer])), start).parameters[0]
         if np.abs(end - feet.parameters[place]).max() > JUMP * np.ptp(bounds, axis=1).max():
             end = _clamped(feet.parameters[place], bounds)
-        return np.asarray(end[None], dtype=np.float64)
+        return np.concatenate([[outer], end])[None]
+    if not piece.own_ends[0 if side < 0 else 1]:
+        return np.zeros((0, 3))
     # The curve's own end: a border within the tolerance was meant.
     here = feet.parameters[place]
     _, along_u, along_v = evaluate(search.patch.surface, here[None])
     speeds = np.array([np.linalg.norm(along_u), np.linalg.norm(along_v)])
     gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
+    if along:
+        gaps[gaps <= TOUCH] = np.inf
     axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
     if gaps[axis, border] > tolerance:
-        return np.zeros((0, 2))
+        return np.zeros((0, 3))
     reached = here.copy()
     reached[axis] = bounds[axis, border]
-    return np.asarray(reached[None], dtype=np.float64)
+    return np.concatenate([[np.nan], reached])[None]
 
 
 def _clamped(parameters: Array, bounds: Array) -> Array:
@@ -210,21 +261,3 @@ def _clamped(parameters: Array, bounds: Array) -> Array:
     moved = parameters.copy()
     moved[axis] = bounds[axis, border]
     return moved
-
-
-def _edge(patch: Patch, line: Array) -> TopoDS_Edge:
-    """The edge on a patch through (k, 2) parameters, with no more poles than it needs."""
-    points = patch.points(line)
-    reached = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
-    keep = np.concatenate([[True], np.diff(reached) > 1e-9 * reached[-1]])
-    line, points, reached = line[keep], points[keep], reached[keep] / reached[-1]
-    degree = min(DEGREE, len(line) - 1)
-    whole = make_interp_spline(reached, line, k=degree)
-    for count in COUNTS:
-        places = np.linspace(0.0, 1.0, count)
-        spline = make_interp_spline(places, whole(places), k=degree)
-        if norm(patch.points(np.asarray(spline(reached))) - points).max() <= CLOSE:
-            break
-    edge = BRepBuilderAPI_MakeEdge(spline_curve(spline), geometry(patch)).Edge()
-    BRepLib.BuildCurves3d_s(edge)
-    return edge

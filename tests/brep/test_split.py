@@ -12,7 +12,7 @@ from OCP.TColgp import TColgp_Array2OfPnt
 from cadpanel.brep.patch import patch_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.split import area_of, split_faces
-from cadpanel.brep.subdivide.grid import _line_edge
+from cadpanel.brep.subdivide.grid import line_edge
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import write_shape
 
@@ -63,5 +63,5 @@ def test_border_beside_its_own_edge_is_laid_along_it():
 
 def test_area_within_the_tolerance_of_the_border_is_not_lost():
     patch = patch_of(disc(spline_plane()))
-    tools = [_line_edge(patch, axis, 0.5) for axis in (0, 1)]
+    tools = [line_edge(patch, axis, 0.5) for axis in (0, 1)]
     assert len(split_faces([disc(spline_plane())], tools, "a disc").faces[0]) == 4

@@ -11,11 +11,13 @@ import numpy as np
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
+from cadpanel.brep.project import land_curves
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
 from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
-from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network, land_curves
+from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.seam import opened
 from cadpanel.brep.subdivide.stations import cut_stations, spine_of
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
@@ -107,21 +109,24 @@ def _cut_by_curves(
 ) -> Cut:
     """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
     tolerance = skin.settings.seam_tolerance
-    landings = [land_curves(surface, curves, tolerance) for surface in skin.surfaces]
+    source = skin.model.source
+    surfaces = [opened(surface, source) for surface in skin.surfaces]
+    landings = land_curves(surfaces, curves, tolerance, curve_source)
     stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
     if stray:
         called = stray[0].called
         raise ReferenceFileError(
-            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{skin.model.source}': "
-            f"{remedy}."
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{source}': {remedy}."
         )
     panels: list[CutPanel] = []
-    for surface, landing in zip(skin.surfaces, landings, strict=True):
-        panels += cut_network(surface, curves, landing, skin.model.source, curve_source, remedy, tolerance)
-    farthest = max(landing.offset for landing in landings)
-    if farthest > WORTH_A_NOTE:
-        off = f"The curves of '{curve_source}' lie up to {farthest:.3g} mm off the surface and were projected onto it."
-        notes = (*notes, off)
+    for whole, surface, landing in zip(skin.surfaces, surfaces, landings, strict=True):
+        what = f"the surface of {whole.numbers} of '{source}'"
+        panels += cut_network(surface, curves, landing, what, curve_source, remedy, tolerance)
+    farthest, offset = max(enumerate(landing.offset for landing in landings), key=lambda landed: landed[1])
+    if offset > WORTH_A_NOTE:
+        off = "the surface" if len(landings) == 1 else f"the surface of {skin.surfaces[farthest].numbers}"
+        found = f"The curves of '{curve_source}' lie up to {offset:.3g} mm off {off} and were projected onto it."
+        notes = (*notes, found)
     return Cut(panels=tuple(panels), notes=notes)
 
 

@@ -79,7 +79,7 @@ def _whole_cells(patch: Patch, lines: list[Array]) -> list[tuple[int, int, TopoD
 
 def _trimmed_cells(patch: Patch, lines: list[Array], what: str) -> list[tuple[int, int, TopoDS_Face]]:
     """The pieces of a trimmed face between the lines, each with its cell."""
-    tools = [_line_edge(patch, axis, place) for axis in (0, 1) for place in lines[axis][1:-1].tolist()]
+    tools = [line_edge(patch, axis, place) for axis in (0, 1) for place in lines[axis][1:-1].tolist()]
     pieces = split_faces([patch.face], tools, what).faces[0] if tools else (patch.face,)
     cells = []
     for piece in pieces:
@@ -97,7 +97,7 @@ def _trimmed_cells(patch: Patch, lines: list[Array], what: str) -> list[tuple[in
     return sorted(cells, key=lambda cell: cell[:2])
 
 
-def _line_edge(patch: Patch, axis: int, place: float) -> TopoDS_Shape:
+def line_edge(patch: Patch, axis: int, place: float) -> TopoDS_Shape:
     """The edge along which parameter `axis` has one value, over the face's whole range."""
     low, high = patch.bounds[1 - axis].tolist()
     ends = [gp_Pnt2d(place, low), gp_Pnt2d(place, high)] if axis == 0 else [gp_Pnt2d(low, place), gp_Pnt2d(high, place)]

@@ -18,18 +18,15 @@ from scipy.sparse.csgraph import connected_components
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.model import compound_of, shapes_of
-from cadpanel.brep.project import Landing, land
+from cadpanel.brep.project import Landing
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.split import Pieces, length_of, split_faces
-from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
 
-# A curve may lie this far off the surface, as a part of the surface's size, and at least this many mm.
-NEAR_PART = 0.01
-NEAR = 10.0
 # An offset of more than this is worth a note, mm.
 WORTH_A_NOTE = 0.01
 # Tolerances of the splitter that are tried in turn, as parts of the seam tolerance, until every curve cuts.
@@ -51,17 +48,11 @@ class _Cut:
     loose: tuple[tuple[int, TopoDS_Edge], ...]
 
 
-def land_curves(surface: Surface, curves: Sequence[Curve], tolerance: float) -> Landing:
-    """What curves leave on a surface; those that do not pass over it leave nothing."""
-    reach = max(NEAR, NEAR_PART * surface.size)
-    return land(surface, [curve.points for curve in curves], reach, tolerance)
-
-
 def cut_network(
     surface: Surface,
     curves: Sequence[Curve],
     landing: Landing,
-    source: str,
+    what: str,
     curve_source: str,
     remedy: str,
     tolerance: float,
@@ -75,7 +66,7 @@ def cut_network(
         surface: what to cut.
         curves: all curves.
         landing: what they leave on the surface.
-        source: the reference's name.
+        what: the surface, for messages ("the surface of face 3 of 'roof.step'").
         curve_source: the name of the file that the curves come from.
         remedy: what to do about a curve that does not cut.
         tolerance: how far a curve may end from where it should, mm.
@@ -83,7 +74,9 @@ def cut_network(
     Raises:
         ReferenceFileError: a curve ends inside a panel, or the kernel does not cut along it.
     """
-    cut = _split(surface, landing.edges, f"the surface of {surface.numbers} of '{source}'", tolerance)
+    if not any(landing.edges):
+        return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
+    cut = _split(surface, landing.edges, what, tolerance)
     if cut.loose:
         index, edge = cut.loose[0]
         x, y, z = _middle(edge)

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.TopoDS import TopoDS_Face
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
@@ -67,7 +66,7 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> S
         ]
     )
     _check_room(surface, width, middles, borders, sections, source)
-    faces = _along_parameters(sections, borders, surface.faces)
+    faces = _along_parameters(sections, borders, surface.faces, source)
     if faces is None:
         what = f"the surface of {surface.numbers} of '{source}' along its lip"
         pieces = _cut_along_curves(surface, sections, borders, what, tolerance)
@@ -120,8 +119,8 @@ def _check_room(
 
 
 def _along_parameters(
-    sections: Sections, borders: Array, faces: Sequence[SkinFace]
-) -> list[tuple[SkinFace, TopoDS_Face]] | None:
+    sections: Sections, borders: Array, faces: Sequence[SkinFace], source: str
+) -> list[SkinFace] | None:
     """The band between parameter lines of the lanes, exactly; None where these do not keep it even."""
     if sections.lanes is None or sections.lane is None or sections.across is None:
         return None
@@ -143,8 +142,8 @@ def _along_parameters(
         first, last = sorted(lane.patch.at(lane.axis, np.zeros(2), ends)[:, 1 - lane.axis].tolist())
         along = tuple(lane.patch.bounds[lane.axis].tolist())
         ranges = (along, (first, last)) if lane.axis == 0 else ((first, last), along)
-        kept.append((faces[number], rectangle(lane.patch, *ranges)))
-    return kept
+        kept.append(measure(replace(faces[number].source, face=rectangle(lane.patch, *ranges)), source))
+    return [face for face in kept if face is not None]
 
 
 def _cut_along_curves(surface: Surface, sections: Sections, borders: Array, what: str, tolerance: float) -> Pieces:
@@ -177,10 +176,8 @@ def _cloud(sections: Sections, square: Sequence[Array]) -> tuple[Array, Array]:
     return points.reshape(-1, 3), np.tile(distances, CLOUD_ALONG)
 
 
-def _within(
-    pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: float, source: str
-) -> list[tuple[SkinFace, TopoDS_Face]]:
-    """The pieces that lie no farther than half a width from the lip, each with the face that it is a part of."""
+def _within(pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: float, source: str) -> list[SkinFace]:
+    """The pieces that lie no farther than half a width from the lip."""
     tree = cKDTree(cloud[0])
     kept = []
     for face, parts in zip(surface.faces, pieces.faces, strict=True):
@@ -196,14 +193,13 @@ def _within(
                     "width, or trim the face where it was modelled."
                 )
             if share >= MOST:
-                kept.append((face, part))
+                kept.append(piece)
     return kept
 
 
-def _joined(pieces: Sequence[tuple[SkinFace, TopoDS_Face]], surface: Surface, source: str, tolerance: float) -> Surface:
+def _joined(faces: Sequence[SkinFace], surface: Surface, source: str, tolerance: float) -> Surface:
     """The pieces as a surface under the old name."""
-    faces = [measure(replace(face.source, face=piece), source) for face, piece in pieces]
-    found, _ = surfaces_of([face for face in faces if face is not None], source, tolerance)
+    found, _ = surfaces_of(faces, source, tolerance)
     if len(found) != 1:
         raise ReferenceFileError(
             f"The band about the lip of the surface of {surface.numbers} of '{source}' falls into {len(found)} parts: "

@@ -20,7 +20,8 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.project import Landing
 from cadpanel.brep.sampling import sample_faces
-from cadpanel.brep.split import Pieces, length_of, split_faces
+from cadpanel.brep.split import Pieces, length_of
+from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
@@ -97,11 +98,11 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
     owners = [(index, edge) for index, parts in enumerate(tools) for edge in parts]
     cut: _Cut | None = None
     for part in FUZZY_PARTS:
-        pieces = split_faces(faces, [edge for _, edge in owners], what, part * tolerance)
+        pieces = split_along(faces, [edge for _, edge in owners], what, part * tolerance)
         cut = _looked_at(pieces, owners)
         if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
             kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
-            pieces = split_faces(faces, [edge for _, edge in kept], what, part * tolerance)
+            pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept)
         if not cut.loose:
             break

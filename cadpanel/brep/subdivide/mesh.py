@@ -17,8 +17,7 @@ from cadpanel.brep import kernel
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
-from cadpanel.brep.model import compound_of
-from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.split import middle_of
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.brep.subdivide.weld import welded
@@ -132,8 +131,7 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
             f"The mesh '{mesh_source}' has {len(mesh.faces)} faces, but the edges between them cut '{source}' into "
             f"{len(panels)} panels: {LAY_OVER}."
         )
-    samples = [np.concatenate([face.points for face in sample_faces(compound_of(panel.faces))]) for panel in panels]
-    _, nearest = cKDTree(mesh.middles()).query(np.array([points.mean(axis=0) for points in samples]))
+    _, nearest = cKDTree(mesh.middles()).query(np.array([middle_of(panel.faces) for panel in panels]))
     alone = np.bincount(nearest, minlength=len(mesh.faces))
     if alone.max() > 1:
         raise ReferenceFileError(

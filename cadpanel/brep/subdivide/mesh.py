@@ -33,7 +33,7 @@ GIVE_UNIT = "give the mesh's unit with --unit where that is not mm"
 LAY_OVER = f"lay the mesh over the surface, up to its outline all round, and {GIVE_UNIT}"
 """What to do about a mesh whose edges do not cut the surface into its faces."""
 # Points along an edge that are brought onto the surface.
-POINTS = 33
+POINTS = 9
 
 
 class _Edge(Curve):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from cadpanel.brep import kernel
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
+from cadpanel.brep.smooth import Piece
 from cadpanel.brep.split import middle_of
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel
@@ -32,8 +34,8 @@ FEWEST_CORNERS = 3
 GIVE_UNIT = "give the mesh's unit with --unit where that is not mm"
 LAY_OVER = f"lay the mesh over the surface, up to its outline all round, and {GIVE_UNIT}"
 """What to do about a mesh whose edges do not cut the surface into its faces."""
-# Points along an edge that are brought onto the surface.
-POINTS = 9
+# Points along an edge that are brought onto the surface at first, as parts of its length.
+PARTS = np.linspace(0.0, 1.0, 9)
 
 
 class _Edge(Curve):
@@ -71,13 +73,15 @@ class Mesh:
             way = DRAWN_ON * (last - first)
             start = first - way if edge[0] in on_border else first
             stop = last + way if edge[1] in on_border else last
-            parts = np.linspace(0.0, 1.0, POINTS)[:, None]
+            along = partial(_along, start, stop)
+            piece = Piece(at=along, parameters=PARTS, points=along(PARTS))
             found.append(
                 _Edge(
                     number=len(found) + 1,
                     name=f"from corner {edge[0] + 1} to {edge[1] + 1}",
                     edge=BRepBuilderAPI_MakeEdge(kernel.point(start), kernel.point(stop)).Edge(),
-                    points=start + parts * (stop - start),
+                    points=piece.points,
+                    parts=(piece,),
                 )
             )
         return tuple(found)
@@ -153,6 +157,11 @@ def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
         raise ReferenceFileError(
             f"{count} faces of '{name}' share the edge from corner {first + 1} to {last + 1}: at most two panels can."
         )
+
+
+def _along(start: Array, stop: Array, parts: Array) -> Array:
+    """(m, 3) points at (m,) parts of the way."""
+    return start + parts[:, None] * (stop - start)
 
 
 def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:

@@ -13,9 +13,10 @@ from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.patch import geometry, patch_of
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.split import area_of, split_faces
+from cadpanel.brep.split import area_of, require_whole, split_faces
 from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.grid import line_edge
+from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import write_shape
 
@@ -58,10 +59,10 @@ def test_disc_is_cut_into_quarters_of_its_circle(tmp_path, surface):
 
 def test_border_beside_its_own_edge_is_laid_along_it():
     coarse = disc(spline_plane())
-    assert area_of(coarse, exactly=True) != pytest.approx(AREA, rel=1e-6)
+    assert area_of(coarse) != pytest.approx(AREA, rel=1e-6)
     face = patch_of(coarse).face
     assert BRepCheck_Analyzer(face).IsValid()
-    assert area_of(face, exactly=True) == pytest.approx(AREA, rel=1e-7)
+    assert area_of(face) == pytest.approx(AREA, rel=1e-7)
 
 
 def test_area_within_the_tolerance_of_the_border_is_not_lost():
@@ -105,3 +106,13 @@ def test_edge_on_the_surface_of_two_faces_cuts_those_that_it_passes_over(end, pi
     edge = chord(patch_of(squares[0]), (-0.1, 0.5), (end, 0.5))
     found = split_along(squares, [edge], "two squares")
     assert [len(parts) for parts in found.faces] == pieces
+
+
+def test_a_piece_that_is_lost_or_counted_twice_is_refused():
+    face = patch_of(disc(spline_plane())).face
+    patch = patch_of(face)
+    parts = split_along([face], [line_edge(patch, axis, 0.5) for axis in (0, 1)], "a disc").faces[0]
+    require_whole(face, parts, "a disc")
+    for wrong in (parts[1:], (*parts, parts[0])):
+        with pytest.raises(ReferenceFileError, match="cannot split a disc"):
+            require_whole(face, wrong, "a disc")

@@ -19,9 +19,8 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
 from cadpanel.brep.smooth import Piece
-from cadpanel.brep.split import middle_of
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
-from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.panel import CutPanel, middle_of
 from cadpanel.brep.subdivide.weld import welded
 from cadpanel.errors import ReferenceFileError
 

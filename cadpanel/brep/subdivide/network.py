@@ -18,9 +18,9 @@ from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.model import shapes_of
 from cadpanel.brep.project import Landing
-from cadpanel.brep.split import Pieces, length_of, middle_of
+from cadpanel.brep.split import Pieces, length_of
 from cadpanel.brep.split_edges import split_along
-from cadpanel.brep.subdivide.panel import CutPanel, along_panels
+from cadpanel.brep.subdivide.panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
 

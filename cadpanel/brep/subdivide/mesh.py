@@ -19,6 +19,7 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
 from cadpanel.brep.smooth import Piece
+from cadpanel.brep.subdivide.hanging import parted
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel, middle_of
 from cadpanel.brep.subdivide.weld import welded
@@ -117,9 +118,12 @@ def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: f
     fault = f"has fewer than three corners, or one twice, as those within {tolerance:g} mm of each other are the same"
     _check_corners(path.name, shared, len(points), fault)
     _check_edges(path.name, shared)
+    shared, edges = parted(points, shared)
     notes = [] if millimetres else [no_unit(path.name, "mesh")]
     if joined:
         notes.append(f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as one.")
+    if edges:
+        notes.append(f"{edges} edges of '{path.name}' are parted where corners of other faces lie on them.")
     return Mesh(corners=points, faces=shared, notes=tuple(notes))
 
 

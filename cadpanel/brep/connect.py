@@ -103,7 +103,7 @@ def surfaces_of(
     number, labels = connected_components(graph, directed=False)
     groups = [np.flatnonzero(labels == group).tolist() for group in range(number)]
     middles = np.array([_middle([faces[index] for index in group]) for group in groups])
-    order = np.lexsort([_levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
+    order = np.lexsort([levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
     names = _names([[faces[index] for index in groups[group]] for group in order])
     surfaces = []
     for name, group in zip(names, order, strict=True):
@@ -232,7 +232,7 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
 
 
-def _levels(values: Array, tolerance: float) -> NDArray[np.intp]:
+def levels(values: Array, tolerance: float) -> NDArray[np.intp]:
     """(n,) the rank of values, in which those that follow each other within a tolerance share one.
 
     Rounding would part two that lie on either side of a half.

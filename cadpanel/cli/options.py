@@ -86,7 +86,8 @@ Faces = Annotated[
     ),
 ]
 Divide = Annotated[
-    int | None, typer.Option("--divide", metavar="N", help="Cut each strip into so many panels of equal length.")
+    int | None,
+    typer.Option("--divide", metavar="N", help="Cut each strip, or ring, into so many panels of equal length."),
 ]
 LipBand = Annotated[
     float | None,

@@ -25,8 +25,8 @@ from cadpanel.brep.products import NamedShape
 from cadpanel.brep.reading import PackedProducts
 from cadpanel.brep.sampling import sample_panels
 from cadpanel.brep.select import select_faces
-from cadpanel.brep.subdivide.cut import cut_surfaces
-from cadpanel.errors import PanelError, ReferenceFileError
+from cadpanel.brep.subdivide.cut import REMEDIES, cut_surfaces
+from cadpanel.errors import OutlineError, PanelError, ReferenceFileError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel, Reference
 from cadpanel.reference.settings import ReferenceSettings, file_named
@@ -62,7 +62,12 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
     raw = read_raw_panels(path, how)
-    reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance)
+    try:
+        reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance)
+    except OutlineError as error:
+        if how.way not in REMEDIES:
+            raise
+        raise error.with_remedy(REMEDIES[how.way]) from error
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
 
 

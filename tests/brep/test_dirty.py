@@ -178,7 +178,9 @@ def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):
 
     star = [kernel_face(blade(angle), (0.0, 1.0)) for angle in (0.0, 2.0, 4.0)]
     path = write_shape(tmp_path / "star.brep", compound_of(star))
-    with pytest.raises(CadpanelError, match=r"The surface of faces 1, 2 and 3 is no strip that could be divided"):
+    with pytest.raises(
+        CadpanelError, match=r"The surface of faces 1, 2 and 3 of 'star.brep' is no strip that could be divided"
+    ):
         read_raw_panels(path, how(divide=2))
     assert len(load_model(path, 1.0).faces()) == 3
 

@@ -16,7 +16,7 @@ from cadpanel.brep.patch import Patch, patch_of
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.model import FaceSamples
-from cadpanel.reference.polyline import arc_lengths, distances_to_polylines
+from cadpanel.reference.polyline import arc_lengths, distances_to_curves
 
 Array = NDArray[np.float64]
 
@@ -150,9 +150,7 @@ def _alike(first: SkinFace, second: SkinFace, tolerance: float) -> bool:
         if not one.samples.edges or not other.samples.edges:
             return bool(one.samples.edges) == bool(other.samples.edges)
         points = np.concatenate([edge[:: max(1, len(edge) // COMPARED)] for edge in one.samples.edges])
-        distances = np.min(
-            [distances_to_polylines(points[None], edge[None])[0] for edge in other.samples.edges], axis=0
-        )
+        distances = np.min([distances_to_curves(points[None], edge[None])[0] for edge in other.samples.edges], axis=0)
         if distances.max() > tolerance:
             return False
     return True

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from cadpanel.brep.boundary import Edge
 from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.patch import Patch
-from cadpanel.reference.polyline import distances_to_polylines, norm, unit
+from cadpanel.reference.polyline import distances_to_curves, norm, unit
 
 Array = NDArray[np.float64]
 
@@ -213,17 +213,11 @@ def _spacing(edge: Array) -> float:
 
 
 def _gap(first: Array, second: Array) -> tuple[float, Array]:
-    """Least distance of the first edge's probes to the second one, mm, less its chords' sagitta; and the probe."""
+    """Least distance of the first edge's probes to the second one, mm; and the probe."""
     probes = first[[round(part * (len(first) - 1)) for part in PROBES]]
-    distances = distances_to_polylines(probes[None], second[None])[0]
+    distances = distances_to_curves(probes[None], second[None])[0]
     nearest = int(np.argmin(distances))
-    return max(0.0, float(distances[nearest]) - _sagitta(second)), probes[nearest]
-
-
-def _sagitta(edge: Array) -> float:
-    """How far a chord of the polyline may lie off the curve at most, mm."""
-    bends = edge[2:] - 2.0 * edge[1:-1] + edge[:-2]
-    return float(np.linalg.norm(bends, axis=1).max(initial=0.0)) / 8.0
+    return float(distances[nearest]), probes[nearest]
 
 
 def _middle(faces: Sequence[SkinFace]) -> Array:

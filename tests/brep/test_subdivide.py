@@ -274,6 +274,30 @@ def test_gap_within_the_tolerance_is_noted_and_a_wider_one_parts_the_strip():
     assert notes == ()
 
 
+@pytest.mark.parametrize("radius", [300.0, 2000.0, 20_000.0])
+@pytest.mark.parametrize(("gap", "joined"), [(0.05, True), (0.36, True), (0.999, True), (1.001, False)])
+def test_gap_along_curved_edges_is_told_as_it_is(radius, gap, joined):
+    def sector(inner, outer):
+        def surface(u, v):
+            reach = inner + (outer - inner) * u
+            return np.stack([reach * np.cos(v), reach * np.sin(v), 0.0 * v], axis=-1)
+
+        return kernel_face(surface, (0.0, 1.0), 24)
+
+    model = model_of(sector(radius - gap - 200.0, radius - gap), sector(radius, radius + 200.0))
+    panels, notes = cut(model, grid=(1, 1))
+    whole = ["S1.1-R01-C01", "S1.2-R01-C01"] if joined else ["S1-R01-C01", "S2-R01-C01"]
+    assert [panel.name for panel in panels] == whole
+    assert notes == (
+        (
+            f"1 edges between faces of 'roof.step' gape, the widest by {gap:.2g} mm between faces 1 and 2; that is "
+            "within the tolerance of 1 mm.",
+        )
+        if joined
+        else ()
+    )
+
+
 def test_face_drawn_twice_and_face_without_width_are_left_out_with_a_note():
     faces = strip_faces(STRAIGHT)
     hair = kernel_face(lambda u, v: np.stack([9000.0 * v, 5000.0 + 0.01 * u, 0.0 * u], axis=-1), (0.0, 1.0))

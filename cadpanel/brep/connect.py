@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -239,10 +240,19 @@ def levels(values: Array, tolerance: float) -> NDArray[np.intp]:
 
 
 def _names(groups: Sequence[Sequence[SkinFace]]) -> list[str]:
-    """The name that all faces of a surface share and no other surface has; else S1, S2 by place."""
+    """The name that all faces of a surface share and no other surface has; else S1, S2 by place.
+
+    Where a surface is called S2 in the file, the one in its place gets the next free number.
+    """
     shared = []
     for group in groups:
         names = {face.source.label.name for face in group}
         shared.append(names.pop() if len(names) == 1 else "")
     uses = Counter(shared)
-    return [name if name and uses[name] == 1 else f"S{place}" for place, name in enumerate(shared, start=1)]
+    own = {name for name, count in uses.items() if name and count == 1}
+    spare = (f"S{number}" for number in itertools.count(len(groups) + 1))
+    chosen = []
+    for place, name in enumerate(shared, start=1):
+        by_place = f"S{place}" if f"S{place}" not in own else next(word for word in spare if word not in own)
+        chosen.append(name if name in own else by_place)
+    return chosen

@@ -30,7 +30,7 @@ from cadpanel.brep.select import select_faces
 from cadpanel.brep.split import area_of
 from cadpanel.brep.subdivide.cut import cut_surfaces
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, choice_named, choices_of
 from tests.model_files import STRIP, strip_faces, write_shape
 from tests.reference_shapes import Lip, kernel_face, ring
 
@@ -243,6 +243,8 @@ def test_station_beyond_the_strip_is_refused():
 def test_surfaces_apart_are_divided_each_for_itself_and_named_by_place_or_by_name():
     near, far = kernel_face(STRAIGHT), kernel_face(Lip(length=9000.0, twist=0.0, taper=0.0, start=20_000.0))
     assert [panel.name for panel in panels_of(model_of(far, near), divide=2)] == ["S1-01", "S1-02", "S2-01", "S2-02"]
+    taken = [panel.name for panel in panels_of(model_of(far, near, names=("", "S2")), divide=2)]
+    assert taken == ["S2-01", "S2-02", "S3-01", "S3-02"]
     named = panels_of(model_of(far, near, names=("east", "west")), divide=2)
     assert [panel.name for panel in named] == ["west-01", "west-02", "east-01", "east-02"]
 
@@ -337,10 +339,23 @@ def test_settings_that_make_no_sense_are_refused(how, sentence):
         ReferenceSettings(**how)
 
 
+@given(st.lists(st.text().map(str.strip).filter(bool), min_size=1))
+@settings(max_examples=200, deadline=None)
+def test_any_names_can_be_listed_with_commas_between_them(names):
+    assert choices_of(", ".join(map(choice_named, names))) == tuple(names)
+
+
+@pytest.mark.parametrize("text", ['"Roof, north', 'layer="Skin', '"a"b', '3,"'])
+def test_quotation_marks_about_a_part_of_a_choice_are_refused(text):
+    with pytest.raises(SettingsError, match=r"the quotation marks in .* do not enclose one choice each"):
+        ReferenceSettings(faces=text)
+
+
 def test_settings_take_their_usual_forms():
     make: Any = ReferenceSettings
     how = make(faces="1, layer=Skin", stations=[1, 2.5], unit="in")
     assert how.faces == ("1", "layer=Skin")
+    assert make(faces='"Roof, north", layer = "Skin, east",3').faces == ("Roof, north", "layer = Skin, east", "3")
     assert how.stations == (1.0, 2.5)
     assert how.millimetres == 25.4
     assert how.way == "stations"

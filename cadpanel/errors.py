@@ -3,6 +3,8 @@
 The message is one sentence for the person at the desk: what, where (file, panel), how much, and what to do about it.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 
@@ -26,6 +28,23 @@ class PanelError(CadpanelError, ValueError):
         super().__init__(f"Panel '{panel}': {reason}")
         self.panel = panel
         self.reason = reason
+
+
+class OutlineError(PanelError):
+    """The faces of a panel do not have the outline of one: one loop with three corners or more.
+
+    Attributes:
+        fault: what is wrong with them.
+    """
+
+    def __init__(self, panel: str, source: str, fault: str, remedy: str) -> None:
+        super().__init__(panel, f"in '{source}', {fault}: {remedy}.")
+        self.source = source
+        self.fault = fault
+
+    def with_remedy(self, remedy: str) -> OutlineError:
+        """The same fault with what to do about it where the panel came about in another way."""
+        return OutlineError(self.panel, self.source, self.fault, remedy)
 
 
 class SettingsError(CadpanelError, ValueError):

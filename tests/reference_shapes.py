@@ -89,11 +89,11 @@ def ring(count: int, radius: float = 6000.0) -> list[Surface]:
 
 
 def lens() -> list[Surface]:
-    """Return two lips that share both their ends and bulge to either side: a ring of two."""
+    """Return two lips that share both their ends and bulge to either side, off both flanges: a ring of two."""
     straight = Lip(twist=0.0, taper=0.0)
 
     def half(bulge: float) -> Surface:
-        return lambda u, v: straight(u, v) + bulge * np.sin(np.pi * v)[..., None] * np.array([0.0, 1.0, 0.0])
+        return lambda u, v: straight(u, v) + bulge * np.sin(np.pi * v)[..., None] * np.array([0.0, 0.7, 0.7])
 
     return [half(60.0), half(-60.0)]
 

@@ -16,7 +16,7 @@ from cadpanel.brep.patch import Patch, patch_of
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.model import FaceSamples
-from cadpanel.reference.polyline import arc_lengths, distances_to_polylines
+from cadpanel.reference.polyline import arc_lengths, distances_to_curves
 
 Array = NDArray[np.float64]
 
@@ -26,6 +26,8 @@ SLIVER = 1e-6
 HAIR = 0.05
 # Points of a face that are compared to tell whether it lies on another one.
 COMPARED = 16
+# Centres of faces that lie on each other are as close as the tolerance, or this part of the largest one's size.
+CENTRES = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,9 +77,8 @@ def skin_faces(
         if skin is None:
             notes.append(f"Face {face.number} of '{source}' has no area and is left out.")
             continue
-        around = sum(float(lengths[-1]) for lengths in arc_lengths(skin.samples.edges))
-        width = 2.0 * skin.area / around if around > 0.0 else np.inf
-        if skin.area <= SLIVER * around**2 or width < HAIR:
+        width = width_of_hair(skin.samples)
+        if width is not None:
             notes.append(f"Face {face.number} of '{source}' is only {width:.2g} mm wide and is left out.")
             continue
         crease = crease_of(skin.patch)
@@ -127,14 +128,7 @@ def _without_doubles(
     faces: Sequence[SkinFace], source: str, tolerance: float
 ) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
     """Leave out each face that covers the same surface as one before it."""
-    if len(faces) < 2:
-        return tuple(faces), ()
-    centres = np.array([face.samples.weights @ face.samples.points / face.area for face in faces])
-    reach = max(tolerance, 1e-6 * max(face.size for face in faces))
-    dropped: dict[int, int] = {}
-    for first, second in sorted(cKDTree(centres).query_pairs(reach)):
-        if first not in dropped and second not in dropped and _alike(faces[first], faces[second], tolerance):
-            dropped[second] = first
+    dropped = find_doubles([face.samples for face in faces], tolerance)
     notes = tuple(
         f"Face {faces[second].number} of '{source}' lies on face {faces[first].number} and is left out."
         for second, first in sorted(dropped.items())
@@ -142,17 +136,42 @@ def _without_doubles(
     return tuple(face for index, face in enumerate(faces) if index not in dropped), notes
 
 
-def _alike(first: SkinFace, second: SkinFace, tolerance: float) -> bool:
+def width_of_hair(samples: FaceSamples) -> float | None:
+    """The width of a face that is too narrow to be a part of a panel, mm; None for all others."""
+    around = sum(float(lengths[-1]) for lengths in arc_lengths(samples.edges))
+    area = float(samples.weights.sum())
+    width = 2.0 * area / around if around > 0.0 else np.inf
+    return width if area <= SLIVER * around**2 or width < HAIR else None
+
+
+def find_doubles(faces: Sequence[FaceSamples], tolerance: float) -> dict[int, int]:
+    """Which faces cover the same surface as one before them, and which that is, by their places.
+
+    Args:
+        faces: each with an area.
+        tolerance: within which a face lies on another one, mm.
+    """
+    dropped: dict[int, int] = {}
+    if len(faces) < 2:
+        return dropped
+    centres = np.array([face.weights @ face.points / face.weights.sum() for face in faces])
+    size = max(float(np.linalg.norm(np.ptp(face.points, axis=0))) for face in faces)
+    for first, second in sorted(cKDTree(centres).query_pairs(max(tolerance, CENTRES * size))):
+        if first not in dropped and second not in dropped and _alike(faces[first], faces[second], tolerance):
+            dropped[second] = first
+    return dropped
+
+
+def _alike(first: FaceSamples, second: FaceSamples, tolerance: float) -> bool:
     """Tell whether two faces have the same boundary and the same area."""
-    if abs(first.area - second.area) > 1e-3 * first.area + tolerance * np.sqrt(first.area):
+    area, other_area = float(first.weights.sum()), float(second.weights.sum())
+    if abs(area - other_area) > 1e-3 * area + tolerance * np.sqrt(area):
         return False
     for one, other in ((first, second), (second, first)):
-        if not one.samples.edges or not other.samples.edges:
-            return bool(one.samples.edges) == bool(other.samples.edges)
-        points = np.concatenate([edge[:: max(1, len(edge) // COMPARED)] for edge in one.samples.edges])
-        distances = np.min(
-            [distances_to_polylines(points[None], edge[None])[0] for edge in other.samples.edges], axis=0
-        )
+        if not one.edges or not other.edges:
+            return bool(one.edges) == bool(other.edges)
+        points = np.concatenate([edge[:: max(1, len(edge) // COMPARED)] for edge in one.edges])
+        distances = np.min([distances_to_curves(points[None], edge[None])[0] for edge in other.edges], axis=0)
         if distances.max() > tolerance:
             return False
     return True

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +16,7 @@ from scipy.spatial import cKDTree
 from cadpanel.brep.boundary import Edge
 from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.patch import Patch
-from cadpanel.reference.polyline import distances_to_polylines, norm, unit
+from cadpanel.reference.polyline import distances_to_curves, norm, unit
 
 Array = NDArray[np.float64]
 
@@ -103,7 +104,7 @@ def surfaces_of(
     number, labels = connected_components(graph, directed=False)
     groups = [np.flatnonzero(labels == group).tolist() for group in range(number)]
     middles = np.array([_middle([faces[index] for index in group]) for group in groups])
-    order = np.lexsort([_levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
+    order = np.lexsort([levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
     names = _names([[faces[index] for index in groups[group]] for group in order])
     surfaces = []
     for name, group in zip(names, order, strict=True):
@@ -213,17 +214,11 @@ def _spacing(edge: Array) -> float:
 
 
 def _gap(first: Array, second: Array) -> tuple[float, Array]:
-    """Least distance of the first edge's probes to the second one, mm, less its chords' sagitta; and the probe."""
+    """Least distance of the first edge's probes to the second one, mm; and the probe."""
     probes = first[[round(part * (len(first) - 1)) for part in PROBES]]
-    distances = distances_to_polylines(probes[None], second[None])[0]
+    distances = distances_to_curves(probes[None], second[None])[0]
     nearest = int(np.argmin(distances))
-    return max(0.0, float(distances[nearest]) - _sagitta(second)), probes[nearest]
-
-
-def _sagitta(edge: Array) -> float:
-    """How far a chord of the polyline may lie off the curve at most, mm."""
-    bends = edge[2:] - 2.0 * edge[1:-1] + edge[:-2]
-    return float(np.linalg.norm(bends, axis=1).max(initial=0.0)) / 8.0
+    return float(distances[nearest]), probes[nearest]
 
 
 def _middle(faces: Sequence[SkinFace]) -> Array:
@@ -232,7 +227,7 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
 
 
-def _levels(values: Array, tolerance: float) -> NDArray[np.intp]:
+def levels(values: Array, tolerance: float) -> NDArray[np.intp]:
     """(n,) the rank of values, in which those that follow each other within a tolerance share one.
 
     Rounding would part two that lie on either side of a half.
@@ -245,10 +240,19 @@ def _levels(values: Array, tolerance: float) -> NDArray[np.intp]:
 
 
 def _names(groups: Sequence[Sequence[SkinFace]]) -> list[str]:
-    """The name that all faces of a surface share and no other surface has; else S1, S2 by place."""
+    """The name that all faces of a surface share and no other surface has; else S1, S2 by place.
+
+    Where a surface is called S2 in the file, the one in its place gets the next free number.
+    """
     shared = []
     for group in groups:
         names = {face.source.label.name for face in group}
         shared.append(names.pop() if len(names) == 1 else "")
     uses = Counter(shared)
-    return [name if name and uses[name] == 1 else f"S{place}" for place, name in enumerate(shared, start=1)]
+    own = {name for name, count in uses.items() if name and count == 1}
+    spare = (f"S{number}" for number in itertools.count(len(groups) + 1))
+    chosen = []
+    for place, name in enumerate(shared, start=1):
+        by_place = f"S{place}" if f"S{place}" not in own else next(word for word in spare if word not in own)
+        chosen.append(name if name in own else by_place)
+    return chosen

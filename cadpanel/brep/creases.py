@@ -37,6 +37,11 @@ def crease_of(patch: Patch) -> float:
     return most if most > LEAST else 0.0
 
 
+def has_breaks(surface: BRepAdaptor_Surface) -> bool:
+    """Whether a surface is not C1 somewhere inside its range; only such a one can have a crease, and few do."""
+    return int(surface.NbUIntervals(GeomAbs_C1)) > 1 or int(surface.NbVIntervals(GeomAbs_C1)) > 1
+
+
 def _normals(patch: Patch, axis: int, part: float) -> Array:
     _, along_u, along_v = evaluate(patch.surface, patch.at(axis, np.array(part), PLACES))
     return unit_normals(along_u, along_v)[0]

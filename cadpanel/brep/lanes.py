@@ -111,18 +111,23 @@ class Lanes:
         return equal_parts(self.reach(), parts)
 
 
-def find_lanes(surface: Surface) -> Lanes | None:
+def find_lanes(surface: Surface, *, crosswise: bool = False) -> Lanes | None:
     """The surface as lanes side by side, or None where its faces are trimmed or do not share a parameter.
 
     The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one. It begins at
     the end that comes first along the axis of space which it follows most.
+
+    Args:
+        surface: any.
+        crosswise: take the direction in which normals turn fast instead.
     """
     patches = [face.patch for face in surface.faces]
     if not all(patch.whole for patch in patches):
         return None
     rates = [_turning_rates(patch) for patch in patches]
     first = max(range(len(patches)), key=lambda index: max(rates[index][0]))
-    lanes: dict[int, Lane] = {first: Lane(patch=patches[first], axis=_slow_axis(*rates[first]), forward=True)}
+    axis = _slow_axis(*rates[first])
+    lanes: dict[int, Lane] = {first: Lane(patch=patches[first], axis=1 - axis if crosswise else axis, forward=True)}
     neighbours = _neighbours(surface)
     joints: set[tuple[tuple[int, float], tuple[int, float]]] = set()
     front = [first]

@@ -18,6 +18,7 @@ from cadpanel.brep import kernel
 from cadpanel.brep.boundary import evaluate
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.patch import Patch, patch_of
+from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.slices import slice_patch
 from cadpanel.brep.split import split_faces
 from cadpanel.brep.strip import Cuts
@@ -204,11 +205,20 @@ def _plane_face(cuts: Cuts, index: int) -> TopoDS_Face:
     return BRepBuilderAPI_MakeFace(plane, -far, far, -far, far).Face()
 
 
+def _beside(place: int, cuts: Cuts) -> list[int]:
+    """The planes that bound a place among them."""
+    return [plane for plane in (place - 1, place) if 0 <= plane < len(cuts.origins)]
+
+
 def _place_of_piece(piece: TopoDS_Face, cuts: Cuts, what: str) -> int:
     """The place of a piece that the kernel split off, once its boundary is seen to keep between its two planes."""
     patch = patch_of(piece)
     points = np.concatenate([edge.points for edge in patch.edges])
     place = int(np.bincount(places_of(points, cuts)).argmax())
+    if any(np.abs((points - cuts.origins[one]) @ cuts.normals[one]).max() <= THROUGH for one in _beside(place, cuts)):
+        # All its boundary lies in one plane, like that of half a ball: its inside tells on which side.
+        inside = np.concatenate([samples.points for samples in sample_faces(piece)])
+        place = int(np.bincount(places_of(inside, cuts)).argmax())
     for plane, sign in ((place - 1, -1.0), (place, 1.0)):
         if 0 <= plane < len(cuts.origins):
             offsets = points - cuts.origins[plane]

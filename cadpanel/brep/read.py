@@ -20,13 +20,14 @@ from cadpanel.brep.formats.step import STEP
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.guard import read_guarded
 from cadpanel.brep.loading import far_origin, load_model, origin_note
+from cadpanel.brep.mend import mend_panels
 from cadpanel.brep.model import Model, compound_of, shapes_of
 from cadpanel.brep.products import NamedShape
 from cadpanel.brep.reading import PackedProducts
 from cadpanel.brep.sampling import sample_panels
 from cadpanel.brep.select import select_faces
-from cadpanel.brep.subdivide.cut import cut_surfaces
-from cadpanel.errors import PanelError, ReferenceFileError
+from cadpanel.brep.subdivide.cut import REMEDIES, cut_surfaces
+from cadpanel.errors import OutlineError, PanelError, ReferenceFileError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel, Reference
 from cadpanel.reference.settings import ReferenceSettings, file_named
@@ -62,7 +63,12 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
     raw = read_raw_panels(path, how)
-    reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
+    try:
+        reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
+    except OutlineError as error:
+        if how.way not in REMEDIES:
+            raise
+        raise error.with_remedy(REMEDIES[how.way]) from error
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
 
 
@@ -80,19 +86,19 @@ def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None)
     if how.way is not None:
         return _cut_panels(path, how)
     if how.faces is None and how.unit is None and checked_format_of(path) is STEP:
-        return _product_panels(path)
+        return _product_panels(path, how.seam_tolerance)
     return _part_panels(load_model(path, how.millimetres), how)
 
 
-def _product_panels(path: Path) -> RawReference:
+def _product_panels(path: Path, tolerance: float) -> RawReference:
     """The products of a STEP file as panels."""
     products = cast(PackedProducts, read_guarded("products", path, None)).unpack()
     origin = far_origin([product.shape for product in products], path.name)
     if origin is not None:
         back = (-origin[0], -origin[1], -origin[2])
         products = tuple(replace(product, shape=shifted(product.shape, back)) for product in products)
-    panels = _sampled(products, path.name)
-    return RawReference(panels=panels, notes=() if origin is None else (origin_note(path.name, origin),))
+    panels, mended = _mended(products, path.name, tolerance)
+    return RawReference(panels=panels, notes=(*(() if origin is None else (origin_note(path.name, origin),)), *mended))
 
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
@@ -102,7 +108,8 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
         curves = len(model.parts) - len(with_faces)
         notes = [f"'{model.source}' holds {curves} loose curves, which are no panels."] if curves else []
         shapes = [NamedShape(part.label.name, "", part.shape) for part in with_faces]
-        return RawReference(panels=_sampled(shapes, model.source), notes=(*model.notes, *notes))
+        panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
+        return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
     chosen, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     parts = sorted({face.source.part for face in chosen})
     shapes = [
@@ -125,6 +132,13 @@ def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:
     shapes = [NamedShape(panel.name, "", compound_of(panel.faces)) for panel in cut.panels]
     notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # the reference may be read as a spine, too
     return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
+
+
+def _mended(
+    products: Sequence[NamedShape], source: str, tolerance: float
+) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
+    """Sample panels as the file has them, and mend what can be; with notes."""
+    return mend_panels(_sampled(products, source), [product.shape for product in products], source, tolerance)
 
 
 def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...]:

@@ -9,6 +9,7 @@ from glob import escape
 
 from cadpanel.brep.model import Label, Model, ModelFace
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import choice_named
 
 # No file has a thousand million faces, and Python refuses to read numbers that are much longer.
 NUMBERS = re.compile(r"0*(\d{1,9})(?:\s*-\s*0*(\d{1,9}))?")
@@ -62,6 +63,7 @@ def _chosen(word: str, faces: Sequence[ModelFace]) -> set[int]:
         last = int(numbers[2] or first)
         return set(range(first, last + 1)) if first >= 1 and last <= len(faces) else set()
     key, equals, wanted = word.partition("=")
+    key = key.strip()
     if not equals or key not in _KEYS:
         key, wanted = "name", word
     wanted = wanted.strip().lower() if key == "color" else wanted.strip()
@@ -78,5 +80,5 @@ def _offers(faces: Sequence[ModelFace]) -> str:
         words = sorted({said(face.label) for face in faces} - {""})
         if words:
             more = f" and {len(words) - MOST_LISTED} more" if len(words) > MOST_LISTED else ""
-            offers.append(f"{key}s {', '.join(words[:MOST_LISTED])}{more}")
+            offers.append(f"{key}s {', '.join(map(choice_named, words[:MOST_LISTED]))}{more}")
     return "; ".join(offers)

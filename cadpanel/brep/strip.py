@@ -8,12 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.brep.connect import Surface
-from cadpanel.errors import PanelError, ReferenceFileError
+from cadpanel.errors import OutlineError, ReferenceFileError
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import Side, find_outline
 from cadpanel.reference.polyline import arc_length, interpolate, norm, unit
 
 Array = NDArray[np.float64]
+
+CUT_OTHERWISE = "cut it with a grid, a network of curves or a mesh"
+"""What to do about a surface that is no strip."""
 
 SIDES = 4
 # Two pairs of sides turn alike when their rates differ by less than this factor; then the longer pair is long.
@@ -98,14 +101,15 @@ def find_strip(surface: Surface, source: str) -> Strip:
     raw = RawPanel(name=surface.name, faces=tuple(face.samples for face in surface.faces))
     try:
         sides = find_outline(raw, source).sides
-    except PanelError as error:
+    except OutlineError as error:
         raise ReferenceFileError(
-            f"The surface of {surface.numbers} is no strip that could be divided along its length: {error.reason}"
+            f"The surface of {surface.numbers} of '{source}' is no strip that could be divided along its length "
+            f"({error.fault}): {CUT_OTHERWISE}."
         ) from error
     if len(sides) != SIDES:
         raise ReferenceFileError(
-            f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}: cut it "
-            "with a network of curves, a mesh, or stations along a spine."
+            f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}: "
+            f"{CUT_OTHERWISE}."
         )
     rates = [sum(map(_turning, pair)) / sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]
     lengths = [sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]

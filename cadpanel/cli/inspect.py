@@ -11,7 +11,7 @@ import typer
 
 from cadpanel.brep.guard import start_reader
 from cadpanel.cli import options
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, choices_of
 
 
 def inspect(
@@ -28,7 +28,7 @@ def inspect(
     Exit codes: 0 the file is read; 2 refused.
     """
     how = ReferenceSettings(
-        unit=unit, faces=None if faces is None else tuple(faces.split(",")), seam_tolerance=seam_tolerance
+        unit=unit, faces=None if faces is None else choices_of(faces), seam_tolerance=seam_tolerance
     )
     start_reader()
     # Here, not above: neither help nor a refusal should wait for the CAD kernel.

@@ -13,7 +13,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt
 from cadpanel.fitting.blend import blends_of
 from cadpanel.fitting.settings import FitSettings, Method, Weights
-from cadpanel.reference.settings import By, ReferenceSettings
+from cadpanel.reference.settings import By, ReferenceSettings, choices_of
 
 ReferenceFile = Annotated[
     Path,
@@ -82,11 +82,13 @@ Faces = Annotated[
     typer.Option(
         "--faces",
         metavar="CHOICE,...",
-        help="Which faces are the skin: 3, 2-5, NAME, layer=NAME, color=#RRGGBB; see 'cadpanel inspect'.",
+        help="Which faces are the skin: 3, 2-5, NAME, layer=NAME, color=#RRGGBB; see 'cadpanel inspect'. "
+        """A name with a comma stands in double quotes: '"Roof, north",layer="Skin, east"'.""",
     ),
 ]
 Divide = Annotated[
-    int | None, typer.Option("--divide", metavar="N", help="Cut each strip into so many panels of equal length.")
+    int | None,
+    typer.Option("--divide", metavar="N", help="Cut each strip, or ring, into so many panels of equal length."),
 ]
 LipBand = Annotated[
     float | None,
@@ -185,7 +187,7 @@ def reference_settings(
     return ReferenceSettings(
         seam_tolerance=seam_tolerance,
         unit=unit,
-        faces=None if faces is None else tuple(faces.split(",")),
+        faces=None if faces is None else choices_of(faces),
         divide=divide,
         lip=lip,
         grid=None if grid is None else parse_grid(grid),

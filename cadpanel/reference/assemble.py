@@ -14,9 +14,10 @@ from cadpanel.reference.junctions import part_sides
 from cadpanel.reference.model import RawPanel, Reference
 from cadpanel.reference.orient import align, find_seams, orient
 from cadpanel.reference.outline import find_outline
+from cadpanel.reference.overlaps import refuse_overlaps
 from cadpanel.reference.polyline import norm
 from cadpanel.reference.sheet import Sheet, sheet
-from cadpanel.reference.unmet import refuse_overlaps, unmet_notes
+from cadpanel.reference.unmet import unmet_notes
 
 # Ends of panels that meet may lie this far apart in the file, mm.
 SEAM_TOLERANCE = 1.0
@@ -54,7 +55,7 @@ def assemble(
     _check_tolerance(sheets, seam_tolerance)
     refuse_duplicates(sheets, source, seam_tolerance)
     contacts = find_contacts(sheets, source, seam_tolerance)
-    refuse_overlaps(sheets, contacts, source, seam_tolerance)
+    refuse_overlaps(sheets, source, seam_tolerance)
     notes = unmet_notes(sheets, contacts, source, seam_tolerance)
     flipped = outer_faces(sheets, contacts)
     sheets = [one.other_face() if flip else one for one, flip in zip(sheets, flipped, strict=True)]

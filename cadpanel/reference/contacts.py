@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cadpanel.errors import PanelError
-from cadpanel.reference.polyline import distances_to_polylines, norm
+from cadpanel.reference.polyline import distances_to_curves, norm
 from cadpanel.reference.sheet import Sheet, curves
 
 Array = NDArray[np.float64]
@@ -146,8 +146,8 @@ def _coincide(lines: Array, pairs: NDArray[np.intp], against: NDArray[np.bool_],
     doubtful = np.flatnonzero(~coincide)
     for start in range(0, len(doubtful), CHUNK):
         chunk = doubtful[start : start + CHUNK]
-        there = distances_to_polylines(first[chunk], second[chunk]).max(axis=1)
-        back = distances_to_polylines(second[chunk], first[chunk]).max(axis=1)
+        there = distances_to_curves(first[chunk], second[chunk]).max(axis=1)
+        back = distances_to_curves(second[chunk], first[chunk]).max(axis=1)
         coincide[chunk] = np.maximum(there, back) <= tolerance
     return coincide
 
@@ -172,7 +172,7 @@ def _same_outline(first: Sheet, second: Sheet, tolerance: float) -> bool:
     lines = [np.array([side.points for side in sheet.sides]) for sheet in (first, second)]
     for points, others in ((lines[0], lines[1]), (lines[1], lines[0])):
         flat = points.reshape(1, -1, 3)
-        distances = np.array([distances_to_polylines(flat, line[None])[0] for line in others]).min(axis=0)
+        distances = np.array([distances_to_curves(flat, line[None])[0] for line in others]).min(axis=0)
         if distances.max() > tolerance:
             return False
     return True

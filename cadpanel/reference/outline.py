@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cadpanel.errors import PanelError
+from cadpanel.errors import OutlineError, PanelError
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.polyline import arc_lengths, end_tangents, interpolate, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
@@ -65,7 +65,8 @@ def find_outline(panel: RawPanel, source: str) -> Outline:
         source: the file's name, for messages.
 
     Raises:
-        PanelError: a face has no area, the faces do not touch, or their outline is not one loop with corners.
+        OutlineError: a face has no area, the faces do not touch, or their outline is not one loop with corners.
+        PanelError: there are no faces, or one is too narrow.
     """
     check_faces(panel, source)
     tolerance = min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
@@ -77,9 +78,11 @@ def find_outline(panel: RawPanel, source: str) -> Outline:
         free, contacts = free_edges(split_at_vertices(edges, tolerance), tolerance)
         signs = _face_signs(len(panel.faces), contacts)
         loops, loose = _chain(free, tolerance)
-        _check_loops(panel, source, signs, free, loops, loose)
+        if len(loops) != 1 or loose or len(signs) < len(panel.faces):
+            _refuse_hairs(panel, source, tolerance)
+            _check_loops(panel, source, signs, free, loops, loose)
     loop = [replace(edge, normals=signs[edge.face] * edge.normals) for edge in loops[0]]
-    sides = _cut_at_corners(loop, panel.name, source)
+    sides = _cut_at_corners(loop, panel, source, tolerance)
     return Outline(sides=sides, face_signs=tuple(signs[face] for face in range(len(panel.faces))))
 
 
@@ -87,18 +90,36 @@ def check_faces(panel: RawPanel, source: str) -> None:
     """Refuse a panel without faces, and one with a face that has shrunk to a line or a point.
 
     Raises:
-        PanelError: naming the face by its place.
+        OutlineError: naming the face by its place.
+        PanelError: there are no faces.
     """
     if not panel.faces:
         raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
-    lengths = iter(arc_lengths([points for face in panel.faces for points in face.edges]))
-    for place, face in enumerate(panel.faces, start=1):
-        around = sum(float(next(lengths)[-1]) for _ in face.edges)
-        if len(face.points) == 0 or float(face.weights.sum()) <= SLIVER * around**2:
+    for place, (face, (area, around)) in enumerate(zip(panel.faces, _measures(panel), strict=True), start=1):
+        if len(face.points) == 0 or area <= SLIVER * around**2:
+            fault = f"face {place} of {len(panel.faces)} has no area"
+            raise OutlineError(panel.name, source, fault, "delete it and export again")
+
+
+def _refuse_hairs(panel: RawPanel, source: str, tolerance: float) -> None:
+    """Say of a panel without an outline that one of its faces is so narrow that its short edges count as points.
+
+    Raises:
+        PanelError: naming the face by its place, and its width.
+    """
+    for place, (area, around) in enumerate(_measures(panel), start=1):
+        if 2.0 * area <= tolerance * around:
             raise PanelError(
                 panel.name,
-                f"in '{source}', face {place} of {len(panel.faces)} has no area: delete it and export again.",
+                f"in '{source}', face {place} of {len(panel.faces)} is only {2.0 * area / around:.2g} mm wide, too "
+                "narrow for a panel: leave it out, or cut the surface into fewer panels.",
             )
+
+
+def _measures(panel: RawPanel) -> list[tuple[float, float]]:
+    """Area (mm^2) of each face, and how long its boundary is (mm)."""
+    lengths = iter(arc_lengths([points for face in panel.faces for points in face.edges]))
+    return [(float(face.weights.sum()), sum(float(next(lengths)[-1]) for _ in face.edges)) for face in panel.faces]
 
 
 def _size(panel: RawPanel) -> float:
@@ -170,28 +191,23 @@ def _check_loops(
     """Say why a panel's free edges do not form one closed outline, where they do not."""
     count = len(panel.faces)
     if len(signs) < count:
-        raise PanelError(
+        raise OutlineError(
             panel.name,
-            f"in '{source}', only {len(signs)} of its {count} faces touch each other along an edge, the nearest other "
-            f"one is {_gap(panel, signs):.3g} mm away: join the faces, or export them as panels of their own.",
+            source,
+            f"only {len(signs)} of its {count} faces touch each other along an edge, the nearest other one is "
+            f"{_gap(panel, signs):.3g} mm away",
+            "join the faces, or export them as panels of their own",
         )
     if not free:
-        raise PanelError(
-            panel.name,
-            f"in '{source}', it is a closed surface without an outline: export an open sheet of four sides.",
-        )
+        fault = "it is a closed surface without an outline"
+        raise OutlineError(panel.name, source, fault, "export an open sheet of four sides")
     if loose:
         x, y, z = loose[0]
-        raise PanelError(
-            panel.name,
-            f"in '{source}', its outline is not closed or branches at ({x:.1f}, {y:.1f}, {z:.1f}): "
-            "join its faces along whole edges and export again.",
-        )
+        fault = f"its outline is not closed or branches at ({x:.1f}, {y:.1f}, {z:.1f})"
+        raise OutlineError(panel.name, source, fault, "join its faces along whole edges and export again")
     if len(loops) > 1:
-        raise PanelError(
-            panel.name,
-            f"in '{source}', its outline has {len(loops)} loops where a panel has one: close its holes, export again.",
-        )
+        fault = f"its outline has {len(loops)} loops where a panel has one"
+        raise OutlineError(panel.name, source, fault, "close its holes, export again")
 
 
 def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
@@ -206,18 +222,21 @@ def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
     return float(np.min(distances))
 
 
-def _cut_at_corners(loop: Sequence[Edge], name: str, source: str) -> tuple[Side, ...]:
+def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, tolerance: float) -> tuple[Side, ...]:
     """Cut a closed loop of edges into its sides."""
     turns = _turns(loop)
     corners = np.flatnonzero(turns > CORNER_ANGLE).tolist()
     if len(corners) != FOUR or _is_flat(loop):
         corners = np.flatnonzero(turns > OBTUSE_CORNER).tolist()
     if len(corners) < FEWEST_CORNERS:
+        _refuse_hairs(panel, source, tolerance)
         places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners)
-        raise PanelError(
-            name,
-            f"in '{source}', its outline has {len(corners)} corners{f' (at {places})' if places else ''} "
-            f"where a panel has {FEWEST_CORNERS} or more: trim it to edges that meet in corners.",
+        raise OutlineError(
+            panel.name,
+            source,
+            f"its outline has {len(corners)} corners{f' (at {places})' if places else ''} where a panel has "
+            f"{FEWEST_CORNERS} or more",
+            "trim it to edges that meet in corners",
         )
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]

@@ -11,6 +11,10 @@ Array = NDArray[np.float64]
 
 # Points of the local cubic that carries values between two points of a curve.
 STENCIL = 4
+# Steps of Newton's method towards the foot of a point on that cubic.
+FOOT_STEPS = 4
+# Where a polyline turns by more than this from one segment to the next it is taken for one with a corner, degrees.
+SHARP_TURN = 15.0
 
 
 def norm(vectors: Array) -> Array:
@@ -99,10 +103,60 @@ def distances_to_polylines(points: Array, polylines: Array) -> Array:
         points: (m, q, 3), for each pair the points to measure from.
         polylines: (m, k, 3), for each pair the polyline to measure to.
     """
+    return np.asarray(_to_segments(points, polylines)[0].min(axis=-1))
+
+
+def distances_to_curves(points: Array, curves: Array) -> Array:
+    """Return the (m, q) distances of points to the smooth curves on which the points of polylines lie, pair by pair.
+
+    The curve between two of its points is the cubic of `interpolate`; on a circle drawn with 32 chords a radian, of
+    20 m radius, chords lie 2.4 mm off it, and the cubic less than 0.001 mm.
+
+    Args:
+        points: (m, q, 3), for each pair the points to measure from.
+        curves: (m, k, 3), for each pair points on the curve to measure to, k >= 4.
+    """
+    distances, along = _to_segments(points, curves)
+    nearest = distances.argmin(axis=-1)
+    row = np.arange(len(curves))[:, None]
+    lengths = arc_length(curves)
+    part = np.take_along_axis(along, nearest[..., None], axis=-1)[..., 0]
+    at = lengths[row, nearest] + part * (lengths[row, nearest + 1] - lengths[row, nearest])
+    first = np.clip(nearest - 1, 0, curves.shape[1] - STENCIL)
+    nodes = [lengths[row, first + index] for index in range(STENCIL)]
+    factors = [curves[row, first + index] for index in range(STENCIL)]
+    ways = unit(np.diff(factors, axis=0))
+    # No cubic runs round a corner, nor through two points that are one: there the chords have to do.
+    smooth = np.einsum("smqd,smqd->smq", ways[1:], ways[:-1]).min(axis=0) > np.cos(np.radians(SHARP_TURN))
+    # Newton's divided differences.
+    for order in range(1, STENCIL):
+        for index in range(STENCIL - 1, order - 1, -1):
+            width = np.where(smooth, nodes[index] - nodes[index - order], 1.0)[..., None]
+            factors[index] = (factors[index] - factors[index - 1]) / width
+    for _ in range(FOOT_STEPS):
+        offset, tangent = _on_cubic(points, nodes, factors, at)
+        speed = np.einsum("mqd,mqd->mq", tangent, tangent)
+        step = np.einsum("mqd,mqd->mq", offset, tangent) / np.where(speed > 0.0, speed, 1.0)
+        at = np.clip(at + step, nodes[0], nodes[-1])
+    found = norm(_on_cubic(points, nodes, factors, at)[0])
+    return np.asarray(np.where(smooth, found, distances.min(axis=-1)))
+
+
+def _to_segments(points: Array, polylines: Array) -> tuple[Array, Array]:
+    """Distances (m, q, k) of points to each segment of their polylines, and at which part of it their feet lie."""
     starts, steps = polylines[:, :-1], np.diff(polylines, axis=1)
     squares = np.einsum("mkd,mkd->mk", steps, steps)
     offsets = points[:, :, None] - starts[:, None]
     along = np.einsum("mqkd,mkd->mqk", offsets, steps) / np.where(squares > 0.0, squares, 1.0)[:, None]
-    feet = np.clip(along, 0.0, 1.0)[..., None] * steps[:, None]
-    distances: Array = norm(offsets - feet).min(axis=-1)
-    return distances
+    feet = np.clip(along, 0.0, 1.0)
+    return norm(offsets - feet[..., None] * steps[:, None]), feet
+
+
+def _on_cubic(points: Array, nodes: Sequence[Array], factors: Sequence[Array], at: Array) -> tuple[Array, Array]:
+    """What is left from the points of cubics to some points, and the cubics' tangents there, each (m, q, 3)."""
+    value, tangent = factors[-1], np.zeros_like(factors[-1])
+    for node, factor in zip(nodes[-2::-1], factors[-2::-1], strict=True):
+        beyond = (at - node)[..., None]
+        tangent = tangent * beyond + value
+        value = value * beyond + factor
+    return points - value, tangent

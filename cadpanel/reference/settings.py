@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -20,6 +21,11 @@ MILLIMETRES = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in"
 MOST_PANELS = 1_000_000
 WAYS = ("divide", "grid", "stations", "network", "mesh")
 """The ways to cut a surface into panels, of which one may be asked for."""
+
+# One choice of faces and the comma behind it: what holds a comma stands in quotation marks, "" for one of them.
+CHOICE = re.compile(
+    r'\s*(?:(?P<key>\w+\s*=\s*)?"(?P<quoted>(?:[^"]|"")*)"|(?P<bare>(?!\w+\s*=\s*")[^",][^,]*|))\s*(?:,|$)'
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,6 +131,32 @@ def file_named(value: object, what: str) -> Path:
     return Path(name)
 
 
+def choices_of(text: str) -> tuple[str, ...]:
+    """The choices of faces in a text with commas between them: '3, layer="Skin, north"' are 3 and layer=Skin, north.
+
+    Raises:
+        SettingsError: a quotation mark is not closed, or something follows it.
+    """
+    found, start = [], 0
+    while start <= len(text):
+        choice = CHOICE.match(text, start)
+        if choice is None:
+            raise SettingsError(
+                f"faces: the quotation marks in {text!r} do not enclose one choice each; write them like "
+                '\'"Roof, north",layer="Skin, east",3\''
+            )
+        quoted = choice["quoted"]
+        found.append(choice["bare"] if quoted is None else (choice["key"] or "") + quoted.replace('""', '"'))
+        start = choice.end() if choice[0].endswith(",") else len(text) + 1
+    return tuple(found)
+
+
+def choice_named(word: str) -> str:
+    """How a name or layer is written among choices."""
+    found = CHOICE.fullmatch(word)
+    return word if found is not None and found["bare"] == word else '"{}"'.format(word.replace('"', '""'))
+
+
 def _is_switch(value: object) -> bool:
     """True and False count as numbers in Python, but nobody means them so."""
     return isinstance(value, bool)
@@ -142,7 +174,7 @@ def _require_count(what: str, value: object, least: int) -> None:
 def _words(value: object) -> tuple[str, ...] | None:
     if value is None:
         return None
-    given = value.split(",") if isinstance(value, str) else value
+    given = choices_of(value) if isinstance(value, str) else value
     words = tuple(str(word).strip() for word in given) if isinstance(given, Iterable) else ()
     if not words or not all(words):
         raise SettingsError(f"faces are chosen by names, layers, colors or numbers, not by {value!r}")

@@ -1,4 +1,4 @@
-"""Panels that lie along or over each other without a seam: told in a note, or refused where they cover each other."""
+"""Panels that lie along each other without a seam: told in a note."""
 
 from __future__ import annotations
 
@@ -6,30 +6,26 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from cadpanel.errors import PanelError
 from cadpanel.reference.contacts import CHUNK, SideContact
-from cadpanel.reference.polyline import cross, distances_to_polylines, norm, unit
+from cadpanel.reference.polyline import distances_to_curves, norm
 from cadpanel.reference.sheet import Sheet, curves
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-# Sides are along each other up to this many tolerances, or this part of a side's length, from one another.
+# Sides are along each other up to this many tolerances from one another, or this part of the longer one's length where
+# that is no more than this share of the shorter one's.
 FAR_TOLERANCES = 5.0
 FAR_PART = 0.03
-# Every so many points of a side its neighbours are asked for, and so many of them.
-EVERY = 4
-ASKED = 16
-# They touch where this many of a side's 65 points do, and run along each other apart where this many are near.
+FAR_SHARE = 0.5
+# They touch where this many of the shorter one's 65 points do, and run along each other where this many are near. Every
+# so many are looked at first.
 TOUCHING = 5
 ALONG = 33
-# A sample lies on another panel when it is inside its outline and no farther from one of its samples than this part of
-# their spacing; a panel covers another one when this part of its samples does. So many samples around are looked at.
-ONE_PLACE = 0.75
-COVERED = 0.1
-NEAREST = 6
+# A side that comes nearer to the other by more than this part of its own length does not run along it.
+SLANT = 0.5
+EVERY = 4
 
 
 def unmet_notes(
@@ -48,23 +44,24 @@ def unmet_notes(
     lines, owners = curves(sheets)
     taken = {(panel, side) for one in contacts for panel, side in zip(one.panels, one.sides, strict=True)}
     free = np.array([tuple(owner) not in taken for owner in owners.tolist()])
+    if not free.any():  # a closed body of panels
+        return ()
     lines, owners = lines[free], owners[free]
     met = {contact.panels for contact in contacts}
-    pairs = [
-        (one, other)
-        for one, other in _neighbours(lines, owners, tolerance)
-        if (min(owners[one, 0], owners[other, 0]), max(owners[one, 0], owners[other, 0])) not in met
-    ]
+    pairs, far = _neighbours(lines, owners, tolerance)
+    panels = np.sort(owners[pairs, 0], axis=1).tolist()
+    unmet = np.array([(one, other) not in met for one, other in panels], dtype=np.bool_)
+    pairs, far = pairs[unmet], far[unmet]
     touching: list[tuple[str, str]] = []
     apart: list[tuple[float, str, str]] = []
     for start in range(0, len(pairs), CHUNK):
-        chunk = np.array(pairs[start : start + CHUNK])
-        distances = distances_to_polylines(lines[chunk[:, 0]], lines[chunk[:, 1]])
-        for (one, other), own in zip(chunk.tolist(), distances, strict=True):
+        chunk = pairs[start : start + CHUNK]
+        distances = distances_to_curves(lines[chunk[:, 0]], lines[chunk[:, 1]])
+        for (one, other), own, reach in zip(chunk.tolist(), distances, far[start:], strict=False):
             first, second = sorted((sheets[int(owners[one, 0])].name, sheets[int(owners[other, 0])].name))
             if np.count_nonzero(own <= tolerance) >= TOUCHING:
                 touching.append((first, second))
-            elif np.count_nonzero(own <= _far(lines[one], tolerance)) >= ALONG:
+            elif np.count_nonzero(own <= reach) >= ALONG and _is_level(own[own <= reach], lines[one]):
                 apart.append((float(np.median(own)), first, second))
     return (*_touching_note(sorted(set(touching)), source), *_apart_note(sorted(apart), source, tolerance))
 
@@ -92,73 +89,50 @@ def _apart_note(found: Sequence[tuple[float, str, str]], source: str, tolerance:
     )
 
 
-def _far(line: Array, tolerance: float) -> float:
-    length = float(norm(np.diff(line, axis=0)).sum())
-    return max(FAR_TOLERANCES * tolerance, FAR_PART * length)
+def _is_level(distances: Array, line: Array) -> bool:
+    """Whether a side keeps away from another one rather than points at it, by (k,) distances of points along it."""
+    length = float(norm(np.diff(line, axis=0)).sum()) * len(distances) / len(line)
+    return float(np.ptp(distances)) <= SLANT * length
 
 
-def _neighbours(lines: Array, owners: IntArray, tolerance: float) -> list[tuple[int, int]]:
-    """Pairs of sides of different panels, the second of which is near several points of the first."""
-    if not len(lines):
-        return []
-    count, points = lines.shape[:2]
-    tree = cKDTree(lines.reshape(-1, 3))
-    asked = lines[:, EVERY // 2 :: EVERY]
-    reach = np.repeat([_far(line, tolerance) for line in lines], asked.shape[1])
-    distances, found = tree.query(asked.reshape(-1, 3), k=min(ASKED, count * points))
-    one = np.repeat(np.arange(count), asked.shape[1])[:, None]
-    # Half-way between two points of another side the nearest is half a step away.
-    steps = norm(np.diff(lines, axis=1)).max(axis=1)
-    other = np.minimum(found // points, count - 1)
-    near = (distances <= reach[:, None] + 0.5 * steps[other]) & (owners[one, 0] != owners[other, 0])
-    pairs, hits = np.unique(
-        np.column_stack([np.broadcast_to(one, near.shape)[near], other[near]]), axis=0, return_counts=True
-    )
-    return [(int(a), int(b)) for a, b in pairs[hits >= 2].tolist()]
+def _far(lengths: Array, others: Array, tolerance: float) -> Array:
+    """How far (c,) sides may lie from longer ones, of these lengths, and still run along them, mm."""
+    return np.maximum(FAR_TOLERANCES * tolerance, np.minimum(FAR_PART * others, FAR_SHARE * lengths))
 
 
-def refuse_overlaps(sheets: Sequence[Sheet], contacts: Sequence[SideContact], source: str, tolerance: float) -> None:
-    """Refuse two panels that cover each other over a part of their area, without meeting in a seam as a lens does.
+def _neighbours(lines: Array, owners: IntArray, tolerance: float) -> tuple[IntArray, Array]:
+    """Pairs of sides of different panels that may touch or run along each other.
 
-    Raises:
-        PanelError: naming both.
+    Returns:
+        (c, 2) indices into `lines`, the shorter one first, and (c,) how far from the other one it may run along it, mm.
     """
-    if len(sheets) < 2:
-        return
-    points = np.concatenate([one.points for one in sheets])
-    normals = np.concatenate([one.normals for one in sheets])
-    spacing = np.sqrt(np.concatenate([one.weights for one in sheets]))
-    owner = np.repeat(np.arange(len(sheets)), [len(one.points) for one in sheets])
-    distances, found = (np.asarray(array) for array in cKDTree(points).query(points, k=min(NEAREST, len(points))))
-    # The nearest sample of another panel, if one is among those that are nearest.
-    foreign = owner[found] != owner[:, None]
-    rows, place = np.arange(len(points)), foreign.argmax(axis=1)
-    other, distance = found[rows, place], distances[rows, place]
-    height = np.abs(np.einsum("md,md->m", points - points[other], normals[other]))
-    near = foreign.any(axis=1) & (distance <= ONE_PLACE * spacing[other] + tolerance) & (height <= tolerance)
-    sizes = np.bincount(owner)
-    pairs, counts = np.unique(np.column_stack([owner, owner[other]])[near], axis=0, return_counts=True)
-    met = {contact.panels for contact in contacts}
-    for one, two in pairs[counts >= COVERED * sizes[pairs[:, 0]]].tolist():
-        if (min(one, two), max(one, two)) in met:
-            continue
-        mine = near & (owner == one) & (owner[other] == two)
-        inside = _inside(points[mine], sheets[two], normals[mine].sum(axis=0))
-        if np.count_nonzero(inside) >= COVERED * sizes[one]:
-            raise PanelError(
-                sheets[one].name,
-                f"in '{source}', a part of it covers panel '{sheets[two].name}' to within {tolerance:g} mm: trim or "
-                "delete one of the two.",
-            )
+    lengths = norm(np.diff(lines, axis=1)).sum(axis=1)
+    grown = np.maximum(FAR_TOLERANCES * tolerance, FAR_PART * lengths)[:, None]
+    low, high = lines.min(axis=1), lines.max(axis=1)
+    pairs = _boxes_that_meet(low - grown, high + grown)
+    pairs = pairs[owners[pairs[:, 0], 0] != owners[pairs[:, 1], 0]]
+    pairs = np.where((lengths[pairs[:, 0]] > lengths[pairs[:, 1]])[:, None], pairs[:, ::-1], pairs)
+    far = _far(lengths[pairs[:, 0]], lengths[pairs[:, 1]], tolerance)
+    # Most of these only have a corner in common: some of their points tell, by the box about the other side.
+    probes = lines[pairs[:, 0], EVERY // 2 :: EVERY]
+    beyond = np.maximum(low[pairs[:, 1], None] - probes, probes - high[pairs[:, 1], None]).max(axis=-1)
+    alongside = (beyond <= far[:, None]).sum(axis=1) >= ALONG // EVERY - 1
+    keep = alongside | (beyond <= tolerance).any(axis=1)
+    return pairs[keep], far[keep]
 
 
-def _inside(points: Array, sheet: Sheet, normal: Array) -> NDArray[np.bool_]:
-    """Whether points (m, 3) lie inside a panel's outline, seen along a normal, (m,): it winds about them."""
-    u = unit(cross(normal, np.eye(3)[np.abs(normal).argmin()]))
-    plane = np.stack([u, unit(cross(normal, u))], axis=1)
-    loop = np.concatenate([side.points[:-1] for side in sheet.sides]) @ plane
-    off = loop[None] - (points @ plane)[:, None]
-    angle = np.arctan2(off[..., 1], off[..., 0])
-    turned = np.diff(np.concatenate([angle, angle[:, :1]], axis=1), axis=1)
-    turned -= 2.0 * np.pi * np.round(turned / (2.0 * np.pi))
-    return np.asarray(np.abs(turned.sum(axis=1)) > np.pi)
+def _boxes_that_meet(low: Array, high: Array) -> IntArray:
+    """(c, 2) pairs of the (s, 3) boxes that overlap, in time that grows with how many do along the longest axis."""
+    axis = int(np.ptp(low, axis=0).argmax())
+    order = np.argsort(low[:, axis], kind="stable")
+    low, high = low[order], high[order]
+    stops = np.searchsorted(low[:, axis], high[:, axis], side="right")
+    found = [np.zeros((0, 2), dtype=np.intp)]
+    for start in range(0, len(low), CHUNK):
+        rows = np.arange(start, min(start + CHUNK, len(low)))
+        counts = stops[rows] - rows - 1
+        one = np.repeat(rows, counts)
+        other = one + 1 + np.arange(len(one)) - np.repeat(np.cumsum(counts) - counts, counts)
+        meet = ((low[one] <= high[other]) & (low[other] <= high[one])).all(axis=1)
+        found.append(order[np.column_stack([one[meet], other[meet]])])
+    return np.concatenate(found)

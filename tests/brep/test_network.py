@@ -243,7 +243,8 @@ def bricks(shift=0.0):
 
     The corners of the upper row lie off the lower row's edges by `shift`, as a part of a brick's length.
     """
-    rows, faces = [], []
+    rows: list[str] = []
+    faces: list[str] = []
     for low, joints in ((0, (0, 3000, 6000, 9000)), (2000, (0, 1500, 4500, 7500, 9000))):
         for first, last in pairwise(joints):
             off = 3000.0 * shift if low else 0.0

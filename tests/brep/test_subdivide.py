@@ -30,7 +30,7 @@ from cadpanel.brep.select import select_faces
 from cadpanel.brep.split import area_of
 from cadpanel.brep.subdivide.cut import cut_surfaces
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.settings import ReferenceSettings, choice_named, choices_of
 from tests.model_files import STRIP, strip_faces, write_shape
 from tests.reference_shapes import Lip, kernel_face, ring
 
@@ -178,7 +178,9 @@ def test_tube_is_not_divided_along_its_length_but_by_a_grid():
     ]
     with pytest.raises(ReferenceFileError, match="closed round its length, and a panel cannot go round: cut it both"):
         panels_of(model_of(tube), divide=4)
-    with pytest.raises(ReferenceFileError, match="is closed along its parameter u: a panel cannot go round it"):
+    with pytest.raises(
+        ReferenceFileError, match="is closed along its parameter u, and a panel cannot go round it: cut it into 2"
+    ):
         panels_of(model_of(tube), grid=(1, 4))
     assert_covers(panels_of(model_of(tube), grid=(4, 3)), [tube])
 
@@ -232,13 +234,17 @@ def test_stations_cut_where_they_say():
 
 
 def test_station_beyond_the_strip_is_refused():
-    with pytest.raises(SettingsError, match="the station at 9500 mm lies beyond the end of the strip"):
+    with pytest.raises(
+        SettingsError, match="the station at 9500 mm lies beyond the end of the surface of faces 1, 2 and 3"
+    ):
         panels_of(model_of(*strip_faces(STRAIGHT)), stations=(1000.0, 9500.0))
 
 
 def test_surfaces_apart_are_divided_each_for_itself_and_named_by_place_or_by_name():
     near, far = kernel_face(STRAIGHT), kernel_face(Lip(length=9000.0, twist=0.0, taper=0.0, start=20_000.0))
     assert [panel.name for panel in panels_of(model_of(far, near), divide=2)] == ["S1-01", "S1-02", "S2-01", "S2-02"]
+    taken = [panel.name for panel in panels_of(model_of(far, near, names=("", "S2")), divide=2)]
+    assert taken == ["S2-01", "S2-02", "S3-01", "S3-02"]
     named = panels_of(model_of(far, near, names=("east", "west")), divide=2)
     assert [panel.name for panel in named] == ["west-01", "west-02", "east-01", "east-02"]
 
@@ -268,6 +274,30 @@ def test_gap_within_the_tolerance_is_noted_and_a_wider_one_parts_the_strip():
     panels, notes = cut(model_of(*lifted(1.5)), divide=3)
     assert sorted(len(panel.faces) for panel in panels) == [1, 1, 1, 2, 2, 2]
     assert notes == ()
+
+
+@pytest.mark.parametrize("radius", [300.0, 2000.0, 20_000.0])
+@pytest.mark.parametrize(("gap", "joined"), [(0.05, True), (0.36, True), (0.999, True), (1.001, False)])
+def test_gap_along_curved_edges_is_told_as_it_is(radius, gap, joined):
+    def sector(inner, outer):
+        def surface(u, v):
+            reach = inner + (outer - inner) * u
+            return np.stack([reach * np.cos(v), reach * np.sin(v), 0.0 * v], axis=-1)
+
+        return kernel_face(surface, (0.0, 1.0), 24)
+
+    model = model_of(sector(radius - gap - 200.0, radius - gap), sector(radius, radius + 200.0))
+    panels, notes = cut(model, grid=(1, 1))
+    whole = ["S1.1-R01-C01", "S1.2-R01-C01"] if joined else ["S1-R01-C01", "S2-R01-C01"]
+    assert [panel.name for panel in panels] == whole
+    assert notes == (
+        (
+            f"1 edges between faces of 'roof.step' gape, the widest by {gap:.2g} mm between faces 1 and 2; that is "
+            "within the tolerance of 1 mm.",
+        )
+        if joined
+        else ()
+    )
 
 
 def test_face_drawn_twice_and_face_without_width_are_left_out_with_a_note():
@@ -309,10 +339,23 @@ def test_settings_that_make_no_sense_are_refused(how, sentence):
         ReferenceSettings(**how)
 
 
+@given(st.lists(st.text().map(str.strip).filter(bool), min_size=1))
+@settings(max_examples=200, deadline=None)
+def test_any_names_can_be_listed_with_commas_between_them(names):
+    assert choices_of(", ".join(map(choice_named, names))) == tuple(names)
+
+
+@pytest.mark.parametrize("text", ['"Roof, north', 'layer="Skin', '"a"b', '3,"'])
+def test_quotation_marks_about_a_part_of_a_choice_are_refused(text):
+    with pytest.raises(SettingsError, match=r"the quotation marks in .* do not enclose one choice each"):
+        ReferenceSettings(faces=text)
+
+
 def test_settings_take_their_usual_forms():
     make: Any = ReferenceSettings
     how = make(faces="1, layer=Skin", stations=[1, 2.5], unit="in")
     assert how.faces == ("1", "layer=Skin")
+    assert make(faces='"Roof, north", layer = "Skin, east",3').faces == ("Roof, north", "layer = Skin, east", "3")
     assert how.stations == (1.0, 2.5)
     assert how.millimetres == 25.4
     assert how.way == "stations"

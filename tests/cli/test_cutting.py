@@ -7,7 +7,7 @@ from OCP.gp import gp_Pnt
 
 from cadpanel.brep.model import Label, compound_of
 from tests.cli.conftest import Run
-from tests.model_files import strip_faces, write_labelled, write_shape
+from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip
 
 LIP = Lip(length=6000.0, twist=1.0, taper=0.02, flange=500.0, radius=300.0)
@@ -80,3 +80,20 @@ def test_spine_of_another_file_carries_the_stations(run: Run, tmp_path: Path) ->
     assert answer.code in (0, 1), answer.err
     report = json.loads((out / "report.json").read_text(encoding="utf-8"))
     assert [panel["name"] for panel in report["panels"]] == ["S1-01", "S1-02", "S1-03"]
+
+
+def test_name_and_layer_with_a_comma_choose_their_faces(run: Run, tmp_path: Path) -> None:
+    labels = [Label(name="roof, north"), Label(layer="Skin, east"), Label(name="roof")]
+    parts: list[Labelled] = [(label, face, []) for label, face in zip(labels, strip_faces(LIP), strict=True)]
+    skin = write_labelled(tmp_path / "skin.step", parts)
+    for words, numbers in (
+        ('"roof, north"', [1]),
+        ('layer="Skin, east",3', [2, 3]),
+        ('name = "roof, *" , layer="Skin, *"', [1, 2]),
+    ):
+        answer = run("inspect", skin, "--faces", words, "--json")
+        assert answer.code == 0, answer.err
+        assert [face["number"] for face in json.loads(answer.out)["faces"]] == numbers
+    answer = run("inspect", skin, "--faces", "roof, north")
+    assert answer.code == 2
+    assert """has no face 'north': it has faces 1 to 3; names roof, "roof, north"; layers "Skin, east".""" in answer.err

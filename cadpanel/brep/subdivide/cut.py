@@ -12,6 +12,7 @@ from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve, load_curves, sampled
 from cadpanel.brep.model import Model
 from cadpanel.brep.project import land_curves
+from cadpanel.brep.strip import CUT_OTHERWISE
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths
 from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
@@ -24,6 +25,14 @@ from cadpanel.reference.settings import ReferenceSettings
 
 DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
 """What to do about a curve that does not cut."""
+
+
+REMEDIES = {
+    "divide": f"{CUT_OTHERWISE}, or divide it into another number of panels",
+    "grid": "give a grid of other numbers, 2 or more each way, 3 or more round a point, its lines through every hole",
+    "stations": f"{CUT_OTHERWISE}, or give other stations",
+}
+"""What to do about a panel without an outline, by the way in which it was cut, where that is at fault."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,7 +89,8 @@ def _stations(skin: _Skin) -> Cut:
     how = skin.settings
     found = None if how.spine is None else load_curves(how.spine, skin.model, how.millimetres)
     spine = None if found is None else spine_of(found)
-    cut = [cut_stations(surface, how.stations or (), spine, skin.model.source) for surface in skin.surfaces]
+    stations, tolerance = how.stations or (), how.seam_tolerance
+    cut = [cut_stations(surface, stations, spine, skin.model.source, tolerance) for surface in skin.surfaces]
     return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=found.notes if found else ())
 
 

@@ -15,7 +15,7 @@ from OCP.gp import gp_Pnt2d
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.connect import Surface
-from cadpanel.brep.patch import Patch, equal_parts, geometry, lengths_along, rectangle
+from cadpanel.brep.patch import CLOSED, Patch, equal_parts, geometry, lengths_along, rectangle
 from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.panel import CutPanel, grid_name
 from cadpanel.errors import ReferenceFileError
@@ -42,10 +42,10 @@ def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str) -> 
     for face in surface.faces:
         name = surface.name if len(surface.faces) == 1 else f"{surface.name}.{face.number}"
         for axis, count in enumerate(counts):
-            if count == 1 and face.patch.closed(axis):
+            least, why = _least_count(face.patch, axis)
+            if count < least:
                 raise ReferenceFileError(
-                    f"Face {face.number} of '{source}' is closed along its parameter {'uv'[axis]}: a panel cannot go "
-                    "round it, so cut it there, too (a grid of 2 or more that way)."
+                    f"Face {face.number} of '{source}' {why}: cut it into {least} or more that way."
                 )
         lines = [_lines(face.patch, axis, count, by) for axis, count in enumerate(counts)]
         cells = (
@@ -56,6 +56,25 @@ def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str) -> 
         for row, column, piece in cells:
             panels.append(CutPanel(name=grid_name(name, row, column, counts), faces=(piece,)))
     return _told_apart(panels)
+
+
+def _least_count(patch: Patch, axis: int) -> tuple[int, str]:
+    """How many panels a face must be cut into along a parameter for each to have corners, and why."""
+    # A trimmed face need not reach a point to which its surface shrinks.
+    poles = [patch.whole and _is_point(patch, 1 - axis, part) for part in (0.0, 1.0)]
+    if patch.closed(axis):
+        why = f"is closed along its parameter {'uv'[axis]}, and a panel cannot go round it"
+        # Half-way round, what comes out of a pole goes straight on from what ran into it.
+        return (3, f"{why}, nor half-way round the point to which it shrinks") if any(poles) else (2, why)
+    if patch.whole and all(_is_point(patch, axis, part) for part in (0.0, 1.0)):
+        return 2, f"shrinks to a point at both ends of its parameter {'uv'[axis]}, and a panel between them has 2 sides"
+    return 1, ""
+
+
+def _is_point(patch: Patch, axis: int, part: float) -> bool:
+    """Whether all points at one part of the range of a parameter are the same."""
+    points = patch.points(patch.at(axis, np.array(part), AVERAGED))
+    return bool(np.ptp(points, axis=0).max() < CLOSED)
 
 
 def _lines(patch: Patch, axis: int, count: int, by: By) -> Array:

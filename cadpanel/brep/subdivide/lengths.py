@@ -8,6 +8,7 @@ from cadpanel.brep.connect import Surface
 from cadpanel.brep.lanes import find_lanes
 from cadpanel.brep.lip_band import lip_band
 from cadpanel.brep.planes import cut_by_planes
+from cadpanel.brep.ring import find_ring
 from cadpanel.brep.strip import find_strip
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.errors import ReferenceFileError
@@ -16,8 +17,9 @@ from cadpanel.errors import ReferenceFileError
 def cut_lengths(surface: Surface, count: int, lip: float | None, source: str, tolerance: float) -> tuple[CutPanel, ...]:
     """Cut a strip where the mean length of its two long edges has equal parts.
 
-    Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean;
-    all others by planes through the two long edges, square to the strip.
+    Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean,
+    as are faces that follow each other round a ring, no wider than it is long. All others are cut by planes through the
+    two long edges, square to the strip.
 
     Args:
         surface: what to cut.
@@ -33,12 +35,21 @@ def cut_lengths(surface: Surface, count: int, lip: float | None, source: str, to
         surface = lip_band(surface, lip, source, tolerance)
     lanes = find_lanes(surface)
     parts = np.linspace(0.0, 1.0, count + 1)
-    if lanes is not None:
-        if not lanes.outer:
+    if lanes is None or not lanes.outer:
+        ring = find_ring(surface)
+        if ring is not None and ring.length >= ring.width:
+            if count == 1:
+                raise ReferenceFileError(
+                    f"The surface of {surface.numbers} of '{source}' closes to a ring, and a panel cannot go round: "
+                    "divide it into 2 or more."
+                )
+            return along_panels(surface.name, ring.cut(count, tolerance))
+        if ring is not None or lanes is not None:
             raise ReferenceFileError(
                 f"The surface of {surface.numbers} of '{source}' is closed round its length, and a panel cannot go "
                 "round: cut it both ways, with a grid."
             )
+    if lanes is not None:
         parts[1:-1] = lanes.at_lengths(parts[1:-1])
         return along_panels(surface.name, lanes.cut(parts))
     strip = find_strip(surface, source)

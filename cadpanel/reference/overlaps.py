@@ -1,0 +1,126 @@
+"""Panels that cover each other, found by outlines: where two sheets overlap, one's outline runs over the other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from cadpanel.errors import PanelError
+from cadpanel.reference.polyline import cross, distances_to_curves, norm, unit
+from cadpanel.reference.sheet import Sheet
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+# So many points of a panel's outline, of 64 a side, lie on a panel that it covers: fewer may be a corner's overrun.
+COVERING = 3
+# What lies on a panel has its normal there, or leans against it by no more than this, degrees: a fin stands on it.
+ALIGNED = 20.0
+# An overlap of no more than so many tolerances may be how the file was drawn, and a larger tolerance may help.
+NARROW = 5.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Loop:
+    """A panel's outline as one closed line.
+
+    Attributes:
+        points: (l, 3) mm.
+        normals: (l, 3) of the panel there.
+        inwards: (l, 3) from each point into the panel, square to the outline; between both sides' at a corner.
+    """
+
+    points: Array
+    normals: Array
+    inwards: Array
+
+
+def refuse_overlaps(sheets: Sequence[Sheet], source: str, tolerance: float) -> None:
+    """Refuse two panels that cover each other over a part of their area, however they meet otherwise.
+
+    Where two panels overlap by more than the tolerance, the outline of one of them runs over the other by more than
+    that. Panels that coincide all round are not told: see `refuse_duplicates`.
+
+    Args:
+        sheets: the panels.
+        source: the file's name, for the message.
+        tolerance: how closely they lie on each other, and how far inside the outline of the other, mm.
+
+    Raises:
+        PanelError: naming both.
+    """
+    if len(sheets) < 2:
+        return
+    loops = [_loop(one) for one in sheets]
+    points = np.concatenate([loop.points for loop in loops])
+    normals = np.concatenate([loop.normals for loop in loops])
+    owner = np.repeat(np.arange(len(loops)), [len(loop.points) for loop in loops])
+    tree = cKDTree(points)
+    for index, (one, loop) in enumerate(zip(sheets, loops, strict=True)):
+        near = _beside(index, one, loop, tree, owner, tolerance)
+        if len(near) < COVERING:
+            continue
+        depths = _depths(one, loop, points[near], normals[near], tolerance)
+        for other in np.unique(owner[near]).tolist():
+            own = depths[owner[near] == other]
+            if np.count_nonzero(own > tolerance) >= COVERING:
+                raise PanelError(sheets[other].name, _said(one.name, source, float(own.max()), tolerance))
+
+
+def _said(name: str, source: str, depth: float, tolerance: float) -> str:
+    wider = f", or give a seam tolerance of more than {depth:.3g} mm" if depth <= NARROW * tolerance else ""
+    return (
+        f"in '{source}', a part of it covers panel '{name}' to within {tolerance:g} mm, up to {depth:.4g} mm inside "
+        f"its outline: trim or delete one of the two{wider}."
+    )
+
+
+def _loop(sheet: Sheet) -> _Loop:
+    points, normals = (
+        np.concatenate([array[:-1] for array in arrays])
+        for arrays in ([side.points for side in sheet.sides], [side.normals for side in sheet.sides])
+    )
+    steps = unit(np.roll(points, -1, axis=0) - points)
+    return _Loop(points=points, normals=normals, inwards=unit(cross(normals, steps + np.roll(steps, 1, axis=0))))
+
+
+def _beside(index: int, sheet: Sheet, loop: _Loop, tree: cKDTree, owner: IntArray, tolerance: float) -> IntArray:
+    """The points of other panels' outlines that lie in the box about a panel that stands along its own axes."""
+    own = np.concatenate([loop.points, sheet.points])
+    middle = own.mean(axis=0)
+    _, axes = np.linalg.eigh((own - middle).T @ (own - middle))
+    placed = (own - middle) @ axes
+    low, high = placed.min(axis=0), placed.max(axis=0)
+    reach = float(norm(0.5 * (high - low))) + tolerance
+    near = np.array(tree.query_ball_point(middle + axes @ (0.5 * (low + high)), reach), dtype=np.intp)
+    near = near[owner[near] != index]
+    there = (np.asarray(tree.data)[near] - middle) @ axes
+    # Across the panel, which comes first, the box has the tolerance to spare; along it, what lies on its border is out.
+    margin = tolerance * np.array([1.0, -0.5, -0.5])
+    inside = np.asarray((there >= low - margin) & (there <= high + margin)).all(axis=1)
+    return np.asarray(near[inside], dtype=np.intp)
+
+
+def _depths(sheet: Sheet, loop: _Loop, points: Array, normals: Array, tolerance: float) -> Array:
+    """How far (m,) points inside a panel's outline lie from it, mm; 0 for those outside, or off the panel."""
+    depths = np.zeros(len(points))
+    distance, nearest = (np.asarray(found) for found in cKDTree(loop.points).query(points))
+    inside = np.einsum("md,md->m", points - loop.points[nearest], loop.inwards[nearest]) > 0.0
+    left = np.flatnonzero(inside & (distance > tolerance))
+    if not len(left):
+        return depths
+    cloud, turned = np.concatenate([loop.points, sheet.points]), np.concatenate([loop.normals, sheet.normals])
+    _, below = cKDTree(cloud).query(points[left])
+    agree = np.einsum("md,md->m", normals[left], turned[below])
+    # The mean of both normals is square to the chord on any surface of even curvature, where one alone would not be.
+    mean = unit(turned[below] + np.sign(agree)[:, None] * normals[left])
+    height = np.abs(np.einsum("md,md->m", points[left] - cloud[below], mean))
+    left = left[(np.abs(agree) >= np.cos(np.radians(ALIGNED))) & (height <= tolerance)]
+    if len(left):
+        sides = np.array([side.points for side in sheet.sides])
+        depths[left] = distances_to_curves(np.broadcast_to(points[left], (len(sides), len(left), 3)), sides).min(axis=0)
+    return depths

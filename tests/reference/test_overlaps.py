@@ -1,0 +1,130 @@
+"""Panels that cover each other are refused, however little of them does; panels that only meet never are."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cadpanel.errors import PanelError
+from cadpanel.reference.assemble import assemble
+from cadpanel.reference.model import RawPanel
+from cadpanel.reference.outline import find_outline
+from cadpanel.reference.overlaps import refuse_overlaps
+from cadpanel.reference.sheet import sheet
+from tests.reference.test_unmet import tile
+from tests.reference_shapes import (
+    Lip,
+    lens,
+    moved,
+    raw_grid,
+    raw_honeycomb,
+    raw_panel,
+    raw_strip,
+    ring,
+    sampled_face,
+    sheet_of,
+    strip,
+)
+
+SADDLE = sheet_of(lambda x, y: 900.0 * (x - 0.5) ** 2 - 1200.0 * (y - 0.4) ** 2, 12_000.0, 12_000.0)
+FOLD = Lip(length=4000.0, twist=3.0, taper=0.05)
+
+
+def check(*panels, tolerance=1.0):
+    refuse_overlaps([sheet(raw, find_outline(raw, "roof.step")) for raw in panels], "roof.step", tolerance)
+
+
+def patch(surface, name, u_range, v_range):
+    return RawPanel(name=name, faces=(sampled_face(surface, u_range, v_range),))
+
+
+@pytest.mark.parametrize(
+    "panels",
+    [
+        raw_grid(SADDLE, 7, 5),
+        raw_honeycomb(SADDLE, 3),
+        raw_strip(strip(6)),
+        raw_strip(ring(6)),
+        raw_strip(ring(3)),
+        raw_strip(lens()),
+        raw_strip([Lip(fold=170.0, radius=20.0, flange=400.0, start=2000.0 * k) for k in range(2)]),
+        [tile("A", 0.0, 0.0, 2000.0), tile("B", 0.0, 1000.0), tile("C", 1000.0, 1000.0)],
+        [tile("A", 0.0, 0.0), tile("B", 999.1, 0.0)],
+    ],
+    ids=["grid", "honeycomb", "strip", "ring", "ring of three", "lens", "hairpins", "bond", "within the tolerance"],
+)
+def test_panels_that_only_meet_cover_nothing(panels):
+    check(*panels)
+
+
+@given(
+    place=st.tuples(st.floats(0.05, 0.7), st.floats(0.05, 0.7)),
+    size=st.tuples(st.floats(0.004, 0.25), st.floats(0.004, 0.25)),
+    seed=st.integers(0, 1000),
+)
+@settings(max_examples=60, deadline=None)
+def test_a_panel_inside_another_is_refused_wherever_it_lies_and_however_small(place, size, seed):
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    inner = [(low, low + part) for low, part in zip(place, size, strict=True)]
+    panels = [patch(SADDLE, "outer", (0.0, 1.0), (0.0, 1.0)), patch(SADDLE, "inner", *inner)]
+    turned = [moved(panel, rotation, np.array([1e4, -2e4, 5e3])) for panel in panels]
+    for order in (turned, turned[::-1]):
+        with pytest.raises(PanelError, match=r"Panel 'inner': in 'roof.step', a part of it covers panel 'outer' to"):
+            check(*order)
+
+
+@given(width=st.floats(1.2, 600.0), shift=st.floats(0.0, 0.8), part=st.floats(0.1, 0.2))
+@settings(max_examples=60, deadline=None)
+def test_a_strip_of_any_width_that_two_panels_share_is_refused(width, shift, part):
+    over = patch(SADDLE, "B", (0.5 - width / 12_000.0, 0.9), (shift, shift + part))
+    with pytest.raises(PanelError, match=r"a part of it covers panel '(A|B)'") as caught:
+        check(patch(SADDLE, "A", (0.1, 0.5), (0.0, 1.0)), over)
+    assert ("seam tolerance of more than" in str(caught.value)) == (width < 4.9) or 4.9 < width < 5.1
+
+
+@pytest.mark.parametrize("overlap", [0.9, 1.5, 30.0, 900.0])
+def test_folds_that_run_over_each_other_along_are_refused(overlap):
+    """Also over their bend, and though they go on in one another."""
+    longer = Lip(start=FOLD.start + FOLD.length - overlap, length=2000.0, twist=3.0, taper=0.05)
+    panels = [raw_panel(FOLD, "A"), raw_panel(longer, "B")]
+    if overlap < 1.0:
+        check(*panels)
+        return
+    with pytest.raises(PanelError, match=r"covers panel '(A|B)' to within 1 mm, up to"):
+        check(*panels)
+
+
+def test_panels_that_share_an_edge_and_their_ground_are_refused():
+    with pytest.raises(PanelError, match=r"Panel 'B': .* a part of it covers panel 'A' to within 1 mm, up to 300 mm"):
+        check(tile("A", 0.0, 0.0), tile("B", 0.0, 0.0, 1000.0, 300.0))
+
+
+def test_a_narrow_overlap_is_within_the_tolerance_that_the_refusal_names():
+    panels = tile("A", 0.0, 0.0), tile("B", 998.0, 0.0)
+    with pytest.raises(
+        PanelError, match=r"up to 2 mm inside its outline: .*, or give a seam tolerance of more than 2 mm"
+    ):
+        check(*panels)
+    assert len(assemble(panels, "roof.step", 2.1).seams) == 1
+
+
+@pytest.mark.parametrize(("height", "refused"), [(0.0, True), (0.9, True), (1.1, False), (50.0, False)])
+def test_panels_above_each_other_are_told_apart_by_the_tolerance(height, refused):
+    panels = tile("A", 0.0, 0.0), tile("B", 100.0, 200.0, 300.0, 400.0, height)
+    if refused:
+        with pytest.raises(PanelError, match="covers panel 'A' to within 1 mm"):
+            check(*panels)
+    else:
+        check(*panels)
+
+
+@pytest.mark.parametrize("lean", [90.0, 45.0, 25.0])
+def test_a_fin_that_stands_on_a_panel_does_not_cover_it(lean):
+    up = np.array([0.0, np.cos(np.radians(lean)), np.sin(np.radians(lean))])
+
+    def fin(u, v):
+        return (
+            np.array([200.0, 400.0, 0.0]) + 500.0 * u[..., None] * np.array([1.0, 0.0, 0.0]) + 300.0 * v[..., None] * up
+        )
+
+    check(tile("A", 0.0, 0.0), patch(fin, "fin", (0.0, 1.0), (0.0, 1.0)))

@@ -22,7 +22,7 @@ from tests.model_files import write_shape
 
 RADIUS = 500.0
 AREA = np.pi * RADIUS**2
-LOST = 2e-5  # part of the area: samples are weighed by it as the kernel integrates it at first
+LOST = 1e-6  # part of the area
 
 
 def spline_plane():

@@ -1,9 +1,10 @@
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-from OCP.gp import gp_Pnt
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
+from OCP.gp import gp_Pln, gp_Pnt
 
 from cadpanel.brep.model import Label, compound_of
 from tests.cli.conftest import Run
@@ -37,6 +38,24 @@ def test_flat_panels_are_reported_without_a_bend(run: Run, strip: Path, tmp_path
     assert answer.code in (0, 1), answer.err
     assert "Certificate: 2 solids valid (12 plane faces)" in answer.out
     assert "Taken for the bend" not in answer.out
+
+
+def test_bricks_of_a_mesh_meet_part_by_part(run: Run, tmp_path: Path) -> None:
+    """Two rows of flat bricks of 1 by 2 m over a plane, the upper one shifted by half a brick."""
+    plate = write_shape(tmp_path / "plate.brep", BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 4000.0, 0.0, 2000.0).Face())
+    mesh = tmp_path / "bricks.obj"
+    rows = {0: (0, 2000, 4000), 1000: (0, 1000, 3000, 4000)}
+    bricks = [(a, b, y) for y, joints in rows.items() for a, b in pairwise(joints)]
+    corners = [f"v {x} {z} 0" for a, b, y in bricks for x, z in ((a, y), (b, y), (b, y + 1000), (a, y + 1000))]
+    faces = [f"f {k} {k + 1} {k + 2} {k + 3}" for k in range(1, 4 * len(bricks), 4)]
+    mesh.write_text("\n".join([*corners, *faces]))
+    words = ("--unit", "mm", "--mesh", mesh, "--feature", "planar-polygon", "--junctions")
+    answer = run("fit", plate, *words, "--out", tmp_path / "out", "--quiet")
+    assert answer.code == 0, answer.err
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    # One seam within the lower row, two within the upper, and four between them.
+    assert (len(report["panels"]), len(report["seams"])) == (5, 7)
+    assert run("verify", tmp_path / "out").code == 0
 
 
 @pytest.mark.parametrize(

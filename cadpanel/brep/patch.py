@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-from OCP.BRepTools import BRepTools
 from OCP.Geom import Geom_Surface
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
@@ -17,6 +16,7 @@ from scipy.interpolate import PchipInterpolator
 
 from cadpanel.brep.boundary import Edge, evaluate, sample_edges, unit_normals
 from cadpanel.brep.kernel import TOLERANCE
+from cadpanel.brep.ranges import parameter_range
 from cadpanel.brep.surface_batch import SurfaceBatch
 from cadpanel.brep.trims import sharpen_trims
 
@@ -79,8 +79,7 @@ def patch_of(face: TopoDS_Face) -> Patch:
     sharpen_trims(face)
     surface = BRepAdaptor_Surface(face)
     side = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
-    u_0, u_1, v_0, v_1 = BRepTools.UVBounds_s(face)
-    bounds = np.array([[u_0, u_1], [v_0, v_1]])
+    bounds = parameter_range(face)
     edges = tuple(sample_edges([face], SurfaceBatch([surface]), bounds[None], np.array([side]))[0])
     return Patch(face=face, surface=surface, side=side, bounds=bounds, edges=edges, whole=_is_whole(edges, bounds))
 

@@ -1,20 +1,30 @@
 import numpy as np
 import pytest
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.TopAbs import TopAbs_FACE
+from OCP.BRepLib import BRepLib
+from OCP.Geom2d import Geom2d_Ellipse
+from OCP.gp import gp_Ax2d, gp_Dir2d, gp_Pnt, gp_Pnt2d
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.formats import opennurbs
+from cadpanel.brep.formats.units import scaled
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import shapes_of
 from cadpanel.brep.patch import patch_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.select import select_faces
 from cadpanel.brep.split import area_of
+from cadpanel.brep.trims import sharpen_trims
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 
 rhino = pytest.importorskip("rhino3dm")
 EXACT = 1e-9
+TRIMMED = 1e-6  # part of the area of a face whose border is projected to 1e-4 mm
 
 
 def file_in(unit="Millimeters"):
@@ -98,12 +108,54 @@ def test_solid_of_rhino_is_trimmed_and_closed(tmp_path):
     model = load_model(written(tmp_path / "solids.3dm", file))
     assert all(BRepCheck_Analyzer(part.shape).IsValid() for part in model.parts)
     areas = sorted(area_of(face) for face in shapes_of(model.parts[0].shape, TopAbs_FACE))
-    assert areas == pytest.approx(
-        [np.pi * 500.0**2] * 2 + [2.0 * np.pi * 500.0 * 2000.0], rel=1e-4
-    )  # trimming curves are projected to 0.01 mm
-    assert area_of(model.parts[1].shape) == pytest.approx(
-        4.0 * np.pi * 300.0**2, rel=1e-4
-    )  # trimming curves are projected to 0.01 mm
+    assert areas == pytest.approx([np.pi * 500.0**2] * 2 + [2.0 * np.pi * 500.0 * 2000.0], rel=TRIMMED)
+    assert area_of(model.parts[1].shape) == pytest.approx(4.0 * np.pi * 300.0**2, rel=TRIMMED)
+
+
+def off_border(face):
+    """How far the borders of a face run beside their curves in space at most, mm."""
+    surface = BRepAdaptor_Surface(face)
+    off = [0.0]
+    for edge in map(TopoDS.Edge_s, shapes_of(face, TopAbs_EDGE)):
+        if not BRep_Tool.Degenerated_s(edge):
+            drawn, flat = BRepAdaptor_Curve(edge), BRepAdaptor_Curve2d(edge, face)
+            places = np.linspace(drawn.FirstParameter(), drawn.LastParameter(), 301).tolist()
+            off += [drawn.Value(at).Distance(surface.Value(*flat.Value(at).Coord())) for at in places]
+    return max(off)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("Millimeters", 1.0), ("Meters", 1000.0), ("Inches", 25.4)])
+def test_borders_run_along_their_edges_whatever_the_unit(tmp_path, unit, factor):
+    file, size = file_in(unit), 1.0 / factor
+    circle = rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 500.0 * size)
+    file.Objects.AddBrep(rhino.Brep.CreateFromCylinder(rhino.Cylinder(circle, 2000.0 * size), True, True))
+    corners = ((0.0, 0.0), (900.0, 0.0), (1300.0, 700.0), (200.0, 900.0), (-300.0, 400.0), (0.0, 0.0))
+    drop = rhino.Curve.CreateControlPointCurve([rhino.Point3d(x * size, y * size, 0.0) for x, y in corners], 3)
+    file.Objects.AddExtrusion(rhino.Extrusion.Create(drop, 600.0 * size, True))
+    border = circle.ToNurbsCurve()
+    border.Scale(1.4)
+    file.Objects.AddBrep(rhino.Brep.CreateTrimmedPlane(rhino.Plane.WorldXY(), border))
+    model = load_model(written(tmp_path / "trimmed.3dm", file))
+    assert all(BRepCheck_Analyzer(part.shape).IsValid() for part in model.parts)
+    assert max(off_border(face.face) for face in model.faces()) <= 1e-4
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e-3])
+def test_border_on_a_curved_surface_runs_along_its_edge(factor):
+    surface = opennurbs.surface(bent_surface())
+    hole = Geom2d_Ellipse(gp_Ax2d(gp_Pnt2d(0.5, 0.5), gp_Dir2d(1.0, 0.4)), 0.35, 0.2)
+    flat = BRepBuilderAPI_MakeEdge(hole, surface).Edge()
+    BRepLib.BuildCurves3d_s(flat)
+    # Read, an edge is known by its curve in space only.
+    drawn = BRep_Tool.Curve_s(flat, 0.0, 1.0)
+    for geometry in (surface, drawn):
+        geometry.Scale(gp_Pnt(0.0, 0.0, 0.0), factor)
+    face = opennurbs._trimmed(surface, [[BRepBuilderAPI_MakeEdge(drawn).Edge()]])
+    (face,) = map(TopoDS.Face_s, shapes_of(scaled(face, 1.0 / factor), TopAbs_FACE))
+    assert off_border(face) > 1e-3
+    sharpen_trims(face)
+    assert BRepCheck_Analyzer(face).IsValid()
+    assert off_border(face) <= 1e-4
 
 
 def test_trimmed_plane_keeps_its_outline(tmp_path):
@@ -111,7 +163,7 @@ def test_trimmed_plane_keeps_its_outline(tmp_path):
     circle = rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 700.0).ToNurbsCurve()
     file.Objects.AddBrep(rhino.Brep.CreateTrimmedPlane(rhino.Plane.WorldXY(), circle))
     (face,) = load_model(written(tmp_path / "disc.3dm", file)).faces()
-    assert area_of(face.face) == pytest.approx(np.pi * 700.0**2, rel=1e-4)
+    assert area_of(face.face) == pytest.approx(np.pi * 700.0**2, rel=TRIMMED)
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,8 @@
 """From rhino3dm's surfaces, polysurfaces and curves to the kernel's, exactly: both are NURBS.
 
 openNURBS leaves out the first and the last knot, and gives control points multiplied by their weights. rhino3dm shows a
-face's trimming curves in space and not in the parameter plane; the kernel projects them onto the surface anew.
+face's trimming curves in space and not in the parameter plane; the kernel projects them onto the surface anew, roughly
+(`sharpen_trims` does it again once lengths are millimetres).
 """
 
 from __future__ import annotations

@@ -15,12 +15,13 @@ from typing import Any
 
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_FACE
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cadpanel.brep.formats.format import Format, check_nothing
 from cadpanel.brep.formats.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
 from cadpanel.brep.formats.units import scaled
 from cadpanel.brep.model import Label, Model, Part, shapes_of
+from cadpanel.brep.trims import sharpen_trims
 from cadpanel.errors import ReferenceFileError
 
 MAGIC = re.compile(rb"\s*3D Geometry File Format")
@@ -80,6 +81,9 @@ def _read(path: Path, millimetres: float | None) -> Model:
             left_out[_kind(placed.geometry)] += 1
             continue
         shape = scaled(shape, factor)
+        # Only now are lengths millimetres, of which the kernel's projections may be a whole one off.
+        for face in shapes_of(shape, TopAbs_FACE):
+            sharpen_trims(TopoDS.Face_s(face))
         parts.append(Part(label=placed.label, shape=shape, face_labels=(Label(),) * len(shapes_of(shape, TopAbs_FACE))))
     notes = tuple(f"'{path.name}': {count} x {kind} left out." for kind, count in sorted(left_out.items()))
     return Model(source=path.name, format=RHINO.name, unit=unit, own_unit=own, parts=tuple(parts), notes=notes)

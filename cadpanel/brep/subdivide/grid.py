@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepLib import BRepLib
-from OCP.BRepTools import BRepTools
 from OCP.GCE2d import GCE2d_MakeSegment
 from OCP.Geom2d import Geom2d_TrimmedCurve
 from OCP.gp import gp_Pnt2d
@@ -16,6 +15,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.patch import CLOSED, Patch, equal_parts, geometry, lengths_along, rectangle
+from cadpanel.brep.ranges import parameter_range
 from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.panel import CutPanel, grid_name
 from cadpanel.errors import ReferenceFileError
@@ -102,7 +102,7 @@ def _trimmed_cells(patch: Patch, lines: list[Array], what: str) -> list[tuple[in
     pieces = split_along([patch.face], tools, what).faces[0] if tools else (patch.face,)
     cells = []
     for piece in pieces:
-        bounds = np.array(BRepTools.UVBounds_s(piece)).reshape(2, 2)
+        bounds = parameter_range(piece)
         cell = [int(np.searchsorted(lines[axis], bounds[axis].mean(), side="right")) - 1 for axis in (0, 1)]
         for axis in (0, 1):
             margin = OVER_THE_LINE * np.ptp(patch.bounds[axis])

@@ -32,6 +32,8 @@ BORDER_POINTS = 513
 EVEN = 0.01
 # Two lips turn alike where the lesser turn is no less than this part of the other.
 ALIKE = 0.9
+# Lips are two where their middles are farther apart than this part of their widths together; side by side it is 0.5.
+APART = 0.6
 # The band's borders come from points on the surface and leave it no farther than this part of the strip's length.
 NEAR_PART = 1e-3
 NEAR = 1.0
@@ -87,7 +89,9 @@ def _other_lips(lips: Sequence[Lip], surface: Surface, width: float, source: str
     Raises:
         ReferenceFileError: one of them turns as much, and the band holds only one of the two.
     """
-    chief, *others = lips
+    chief = lips[0]
+    # Two stretches next to each other are one lip, in the midst of which a spline turns less for a moment.
+    others = [lip for lip in lips[1:] if abs(lip.middle - chief.middle) > APART * (chief.width + lip.width)]
     for lip in others:
         if lip.turn >= ALIKE * chief.turn and abs(lip.middle - chief.middle) > 0.5 * width:
             first, second = sorted((chief, lip), key=lambda one: one.middle)

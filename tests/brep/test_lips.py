@@ -189,6 +189,13 @@ def test_two_bends_in_one_band_are_no_question():
     assert len(notes) == 1
 
 
+def test_a_lip_that_turns_less_for_a_moment_in_its_midst_is_one():
+    faces = faces_between(folds(-40.0, 40.0, between=12.0), 0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    panels, notes = cut(model_of(*faces), divide=3, lip=100.0)
+    assert len(panels) == 3
+    assert notes == ()
+
+
 @pytest.mark.parametrize("kink", [0.0, 8.0])
 def test_a_band_goes_on_over_faces_that_lie_end_to_end_and_hold_the_lip_each(kink):
     """Straight on, or in two lines that meet in a kink."""

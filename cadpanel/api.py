@@ -67,6 +67,7 @@ class ReferenceKeywords(TypedDict, total=False):
     spine: str | Path | None
     network: str | Path | None
     mesh: str | Path | None
+    junctions: bool
 
 
 def read(

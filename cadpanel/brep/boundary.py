@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
@@ -20,8 +20,9 @@ from cadpanel.reference.polyline import cross, norm, unit
 
 Array = NDArray[np.float64]
 
-# Points an edge at first. Each further pass may double their segments, so the number stays odd (and at most 257).
+# Points an edge at first, and at most. Each further pass may double their segments, so the number stays odd.
 FEWEST_POINTS = 33
+MOST_POINTS = 257
 PASSES = 4
 EVEN_PARTS = np.linspace(0.0, 1.0, FEWEST_POINTS)
 # Another pass doubles an edge's segments where it turns by more than this between two of them, degrees.
@@ -102,7 +103,8 @@ def sample_edges(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, bounds: A
     normals, _, defined = unit_normals(along_u, along_v, owners[:, None])
     middles = bounds.mean(axis=2)
     whole, (coarse, uneven) = np.asarray(defined.all(axis=1)), _faults(points)
-    faulty = np.asarray(coarse | uneven)
+    # Points that are fewer than the curve's spans may all lie where it crosses its own middle.
+    faulty = np.asarray(coarse | uneven | [_knots(curve) > FEWEST_POINTS for curve in curves])
     signed = sides[owners, None, None] * normals
     for index, owner in enumerate(owners.tolist()):
         if whole[index] and not faulty[index]:
@@ -138,7 +140,10 @@ def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, s
 
 def _refined(curve: BRepAdaptor_Curve2d, surfaces: SurfaceBatch, face: int) -> _Samples:
     """Sample one edge anew at even spacing, the finer the more it turns."""
-    positions = _even_positions(curve)
+    count = FEWEST_POINTS
+    while count < min(_knots(curve), MOST_POINTS):
+        count = 2 * count - 1
+    positions = np.interp(np.linspace(0.0, 1.0, count), EVEN_PARTS, _even_positions(curve))
     for _ in range(PASSES):
         parameters = _curve_values([curve], positions[None])[0]
         points, along_u, along_v = surfaces.evaluate(np.array(face), parameters)
@@ -146,7 +151,7 @@ def _refined(curve: BRepAdaptor_Curve2d, surfaces: SurfaceBatch, face: int) -> _
         if not (coarse or uneven):
             break
         distances = np.concatenate([[0.0], np.cumsum(norm(np.diff(points, axis=0)))])
-        count = 2 * len(positions) - 1 if coarse else len(positions)
+        count = min(2 * len(positions) - 1, MOST_POINTS) if coarse else len(positions)
         positions = np.interp(np.linspace(0.0, distances[-1], count), distances, positions)
     normals, _, defined = unit_normals(along_u, along_v)
     return _Samples(points, normals, defined, parameters)
@@ -161,6 +166,11 @@ def _faults(points: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     cosines = np.einsum("...d,...d->...", segments[..., 1:, :], segments[..., :-1, :])
     coarse = (cosines < np.cos(np.radians(LARGEST_TURN)) * products).any(axis=-1)
     return coarse, lengths.max(axis=-1) > SPACING_RATIO * lengths.min(axis=-1)
+
+
+def _knots(curve: BRepAdaptor_Curve2d) -> int:
+    """How many knots a border has as a spline; 0 where it is none."""
+    return int(curve.NbKnots()) if curve.GetType() == GeomAbs_BSplineCurve else 0
 
 
 def _even_positions(curve: BRepAdaptor_Curve2d) -> Array:

@@ -12,9 +12,11 @@ from OCP.BRep import BRep_Tool
 from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS, TopoDS_Edge
 
+from cadpanel.brep.facets import FACET
 from cadpanel.brep.formats.units import shifted
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Model, ModelCurve
+from cadpanel.brep.polylines import joined
 from cadpanel.brep.smooth import Piece, piece_through, smooth_pieces
 from cadpanel.errors import ReferenceFileError
 
@@ -46,6 +48,11 @@ class Curve:
     def pieces(self) -> tuple[Piece, ...]:
         """Its smooth pieces, each of which begins where the one before it ends."""
         return self.parts or (piece_through(self.points),)
+
+    @property
+    def beside(self) -> float:
+        """How far its pieces run beside a polyline that stands for them, at most, mm."""
+        return max((piece.beside for piece in self.parts), default=0.0)
 
     @property
     def called(self) -> str:
@@ -88,11 +95,13 @@ def load_curves(path: Path, reference: Model, millimetres: float | None) -> Curv
 def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:
     """Curves with points along them, moved by (3,) `shift`; those without length are left out.
 
+    Straight edges that go on from each other with facets only are one curve, called by the first of them.
+
     Raises:
         ReferenceFileError: the kernel cannot evaluate one of them.
     """
     curves = []
-    for number, curve in enumerate(loose, start=1):
+    for number, curve in joined(loose, FACET):
         if BRep_Tool.Degenerated_s(curve.edge):
             continue
         edge = TopoDS.Edge_s(shifted(curve.edge, tuple(shift.tolist()))) if shift.any() else curve.edge

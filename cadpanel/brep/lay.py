@@ -50,75 +50,96 @@ class Stretch:
     offset: float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Course:
+    """A stretch with what is worked out of its line.
+
+    Attributes:
+        stretch: of which.
+        points: (k, 3) those of the patch along its line, mm.
+        parts: (k,) how much of the way along them each has come, from 0 to 1.
+        spline: through the line, by that part.
+    """
+
+    stretch: Stretch
+    points: Array
+    parts: Array
+    spline: BSpline
+
+
 def lay(patch: Patch, stretches: Sequence[Stretch]) -> list[TopoDS_Edge | None]:
     """The edges on a patch along stretches, to within CLOSE; None where that cannot be reached."""
     search = Search(patch)
     found: list[TopoDS_Edge | None] = [None] * len(stretches)
-    active = {place: _tidy(patch, stretch) for place, stretch in enumerate(stretches)}
+    active = dict(enumerate(stretches))
     for _ in range(ROUNDS):
         if not active:
             break
-        splines = {place: _spline(patch, stretch) for place, stretch in active.items()}
-        middles = {place: 0.5 * (stretch.places[:-1] + stretch.places[1:]) for place, stretch in active.items()}
+        courses = dict(zip(active, _courses(patch, list(active.values())), strict=True))
+        middles = {place: 0.5 * (own.stretch.places[:-1] + own.stretch.places[1:]) for place, own in courses.items()}
         drawn = {place: np.isfinite(at) for place, at in middles.items()}
-        points = [active[place].piece.at(middles[place][drawn[place]]) for place in active]
-        starts = [0.5 * (active[place].line[:-1] + active[place].line[1:])[drawn[place]] for place in active]
+        points = [own.stretch.piece.at(middles[place][drawn[place]]) for place, own in courses.items()]
+        starts = [0.5 * (own.stretch.line[:-1] + own.stretch.line[1:])[drawn[place]] for place, own in courses.items()]
         feet = search.feet(np.concatenate(points), np.concatenate(starts)).parameters
         parts = np.split(feet, np.cumsum([len(own) for own in points])[:-1])
-        for place, own in zip(list(active), parts, strict=True):
-            stretch = active[place]
+        for (place, course), own in zip(courses.items(), parts, strict=True):
             segments = np.flatnonzero(drawn[place])
-            off = _deviations(patch, stretch, splines[place], own, segments)
+            off = _deviations(patch, course, own, segments)
+            del active[place]
             if off.max(initial=0.0) <= HALF:
-                found[place] = _edge(patch, stretch, splines[place])
-                del active[place]
+                found[place] = _edge(patch, course)
                 continue
-            bad = off > HALF
-            active[place] = replace(
+            bad, stretch = off > HALF, course.stretch
+            closer = replace(
                 stretch,
                 places=np.insert(stretch.places, segments[bad] + 1, middles[place][segments[bad]]),
                 line=np.insert(stretch.line, segments[bad] + 1, own[bad], axis=0),
             )
-            if len(active[place].places) > MOST_POINTS:
-                del active[place]
+            if len(closer.places) <= MOST_POINTS:
+                active[place] = closer
     return found
 
 
-def _tidy(patch: Patch, stretch: Stretch) -> Stretch:
-    """Without points that lie on the one before."""
-    reached = arc_length(patch.points(stretch.line))
-    keep = np.concatenate([[True], np.diff(reached) > SAME * reached[-1]])
-    return replace(stretch, places=stretch.places[keep], line=stretch.line[keep])
+def _courses(patch: Patch, stretches: Sequence[Stretch]) -> list[_Course]:
+    """What is worked out of each stretch, without points of it that lie on the one before."""
+    every = patch.points(np.concatenate([stretch.line for stretch in stretches]))
+    found = []
+    for stretch, points in zip(
+        stretches, np.split(every, np.cumsum([len(own.line) for own in stretches])[:-1]), strict=True
+    ):
+        reached = arc_length(points)
+        keep = np.concatenate([[True], np.diff(reached) > SAME * reached[-1]])
+        if not keep.all():
+            stretch, points = replace(stretch, places=stretch.places[keep], line=stretch.line[keep]), points[keep]
+            reached = arc_length(points)
+        parts = reached / reached[-1]
+        spline = make_interp_spline(parts, stretch.line, k=min(DEGREE, len(parts) - 1))
+        found.append(_Course(stretch=stretch, points=points, parts=parts, spline=spline))
+    return found
 
 
-def _spline(patch: Patch, stretch: Stretch) -> BSpline:
-    """The spline through all points, by the part of the way along them."""
-    reached = arc_length(patch.points(stretch.line))
-    return make_interp_spline(reached / reached[-1], stretch.line, k=min(DEGREE, len(reached) - 1))
-
-
-def _deviations(patch: Patch, stretch: Stretch, spline: BSpline, feet: Array, segments: NDArray[np.intp]) -> Array:
+def _deviations(patch: Patch, course: _Course, feet: Array, segments: NDArray[np.intp]) -> Array:
     """How far the spline passes beside (m, 2) feet in the middles of (m,) segments, mm."""
-    points, middles = patch.points(stretch.line), patch.points(feet)
-    reached = arc_length(points)
-    before, after = norm(middles - points[segments]), norm(points[segments + 1] - middles)
+    starts, ends = course.points[segments], course.points[segments + 1]
+    middles = patch.points(feet)
+    before, after = norm(middles - starts), norm(ends - middles)
     part = before / np.maximum(before + after, np.finfo(float).tiny)
-    at = (reached[segments] + part * np.diff(reached)[segments]) / reached[-1]
-    away = middles - patch.points(np.asarray(spline(at)))
+    at = course.parts[segments] + part * (course.parts[segments + 1] - course.parts[segments])
+    away = middles - patch.points(np.asarray(course.spline(at)))
     # Where along the spline a foot lies is known roughly only, and does not matter.
-    along = unit(points[segments + 1] - points[segments])
+    along = unit(ends - starts)
     return norm(away - np.sum(away * along, axis=1)[:, None] * along)
 
 
-def _edge(patch: Patch, stretch: Stretch, spline: BSpline) -> TopoDS_Edge:
-    """The edge along a spline, with no more poles than it needs."""
-    reached = arc_length(patch.points(stretch.line))
-    parts = reached / reached[-1]
-    points = patch.points(stretch.line)
+def _edge(patch: Patch, course: _Course) -> TopoDS_Edge:
+    """The edge along a course, with no more poles than it needs."""
+    spline = course.spline
     for count in COUNTS:
+        if count >= len(course.parts):
+            break
         places = np.linspace(0.0, 1.0, count)
         fewer = make_interp_spline(places, spline(places), k=DEGREE)
-        if count < len(parts) and norm(patch.points(np.asarray(fewer(parts))) - points).max() <= HALF:
+        if norm(patch.points(np.asarray(fewer(course.parts))) - course.points).max() <= HALF:
             spline = fewer
             break
     edge = BRepBuilderAPI_MakeEdge(spline_curve(spline), geometry(patch)).Edge()

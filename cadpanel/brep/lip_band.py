@@ -16,7 +16,8 @@ from cadpanel.brep.lips import Lip, follow_lip, lips_midway
 from cadpanel.brep.patch import rectangle
 from cadpanel.brep.project import land
 from cadpanel.brep.sections import CrossSection, Sections, sections_of
-from cadpanel.brep.split import Pieces, split_faces
+from cadpanel.brep.split import Pieces
+from cadpanel.brep.split_edges import split_along
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import cross, norm, unit
 
@@ -198,7 +199,7 @@ def _cut_along_curves(surface: Surface, sections: Sections, borders: Array, what
         curves.append(np.asarray(make_interp_spline(PLACES, points, k=1)(fine)))
     landing = land(surface, curves, max(NEAR, NEAR_PART * sections.strip_length), tolerance)
     tools = [edge for edges in landing.edges for edge in edges]
-    return split_faces([face.patch.face for face in surface.faces], tools, what)
+    return split_along([face.patch.face for face in surface.faces], tools, what)
 
 
 def _cloud(sections: Sections, square: Sequence[Array]) -> tuple[Array, Array]:

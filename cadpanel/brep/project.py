@@ -12,32 +12,23 @@ from OCP.TopAbs import TopAbs_OUT
 from OCP.TopoDS import TopoDS_Edge
 
 from cadpanel.brep import kernel
-from cadpanel.brep.boundary import evaluate
 from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.feet import Feet, Search
 from cadpanel.brep.lay import Stretch, lay
 from cadpanel.brep.patch import Patch
+from cadpanel.brep.runs import runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
 
 # A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
 NEAR_PART = 0.01
 NEAR = 10.0
-# A jump of more than this part of the parameter range goes over the seam of a closed surface.
-JUMP = 0.5
 # A curve lies nearer to another face mostly where that holds for more than this part of its points.
 MOSTLY = 0.5
-# Halvings by which the place is found where a curve leaves a face.
-HALVINGS = 40
-# A stretch along a border shorter than this many tolerances is where a curve crosses it.
-LONG_STRETCH = 10.0
-# A stretch shorter than this is a touch, mm.
-TOUCH = 1e-6
 # Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
 INSIDE = 1e-9
 
@@ -147,15 +138,19 @@ def _over(
         feet = search.feet(points)
         inside = np.ones(len(points), dtype=np.bool_) if len(faces) == 1 else _in_face(face.patch, feet, reaches[place])
         nearest = np.minimum(nearest, np.where(inside, feet.distances, np.inf))
-        stretches = []
+        runs = []
         for (index, piece), start, stop in zip(pieces, starts[:-1], starts[1:], strict=True):
             own = Feet(
                 parameters=feet.parameters[start:stop],
                 distances=feet.distances[start:stop],
                 on_border=feet.on_border[start:stop],
             )
-            for first, last, stretch in _stretches(search, index, piece, own, reaches[place], tolerance):
-                where = start + first + np.flatnonzero(inside[start + first : start + last + 1])
+            runs += runs_over(search.patch, index, piece, own, start, reaches[place], tolerance)
+        stretches = []
+        for run, stretch in zip(runs, stretches_of(search, runs, tolerance), strict=True):
+            if stretch is not None:
+                first, last = run.start + run.first, run.start + run.last
+                where = first + np.flatnonzero(inside[first : last + 1])
                 stretches.append((stretch, where, feet.distances[where]))
         found.append(stretches)
     return [
@@ -178,86 +173,3 @@ def _in_face(patch: Patch, feet: Feet, reach: float) -> NDArray[np.bool_]:
         for place in np.flatnonzero(inside).tolist():
             inside[place] = test.Perform(kernel.point_2d(*feet.parameters[place].tolist())) != TopAbs_OUT
     return inside
-
-
-def _stretches(
-    search: Search, index: int, piece: Piece, feet: Feet, reach: float, tolerance: float
-) -> list[tuple[int, int, Stretch]]:
-    """The stretches of a piece over a patch, each with the first and last of its points."""
-    found = []
-    inside = (feet.distances <= reach) & ~feet.on_border
-    beside = (feet.distances <= tolerance) & feet.on_border
-    for chosen, along, shortest in ((inside, False, TOUCH), (beside, True, LONG_STRETCH * tolerance)):
-        for first, last in _runs(chosen, feet.parameters, search.patch):
-            before, after = (
-                _end(search, piece, feet, end, side, tolerance, along) for end, side in ((first, -1), (last, 1))
-            )
-            places = np.concatenate([before[:, 0], piece.parameters[first : last + 1], after[:, 0]])
-            line = np.concatenate([before[:, 1:], feet.parameters[first : last + 1], after[:, 1:]])
-            if norm(np.diff(search.patch.points(line), axis=0)).sum() > shortest:
-                offset = float(feet.distances[first : last + 1].max())
-                found.append((first, last, Stretch(curve=index, piece=piece, places=places, line=line, offset=offset)))
-    return found
-
-
-def _runs(chosen: NDArray[np.bool_], parameters: Array, patch: Patch) -> list[tuple[int, int]]:
-    """First and last index of each run of chosen points, parted where the parameters jump over a seam."""
-    places = np.flatnonzero(chosen)
-    if not len(places):
-        return []
-    jumps = (np.abs(np.diff(parameters[places], axis=0)) > JUMP * np.ptp(patch.bounds, axis=1)).any(axis=1)
-    breaks = np.flatnonzero((np.diff(places) > 1) | jumps)
-    firsts = np.concatenate([[0], breaks + 1])
-    lasts = np.concatenate([breaks, [len(places) - 1]])
-    return list(zip(places[firsts].tolist(), places[lasts].tolist(), strict=True))
-
-
-def _end(search: Search, piece: Piece, feet: Feet, place: int, side: int, tolerance: float, along: bool) -> Array:
-    """What to add to a stretch at one end, so that it reaches the border where the curve does.
-
-    A stretch `along` a border goes on to where the curve leaves that.
-
-    Returns:
-        (0 or 1, 3) the parameter of the piece, none where it is drawn on, and the two of the patch.
-    """
-    bounds = search.patch.bounds
-    other = place + side
-    if 0 <= other < len(piece.points):
-        inner, outer, start = piece.parameters[place], piece.parameters[other], feet.parameters[place : place + 1]
-        for _ in range(HALVINGS):
-            middle = 0.5 * (inner + outer)
-            foot = search.feet(piece.at(np.array([middle])), start)
-            on = bool(foot.on_border[0]) and (not along or bool(foot.distances[0] <= tolerance))
-            if on == along:
-                inner, start = middle, foot.parameters
-            else:
-                outer = middle
-        outer = inner if along else outer
-        end = search.feet(piece.at(np.array([outer])), start).parameters[0]
-        if np.abs(end - feet.parameters[place]).max() > JUMP * np.ptp(bounds, axis=1).max():
-            end = _clamped(feet.parameters[place], bounds)
-        return np.concatenate([[outer], end])[None]
-    if not piece.own_ends[0 if side < 0 else 1]:
-        return np.zeros((0, 3))
-    # The curve's own end: a border within the tolerance was meant.
-    here = feet.parameters[place]
-    _, along_u, along_v = evaluate(search.patch.surface, here[None])
-    speeds = np.array([np.linalg.norm(along_u), np.linalg.norm(along_v)])
-    gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
-    if along:
-        gaps[gaps <= TOUCH] = np.inf
-    axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
-    if gaps[axis, border] > tolerance:
-        return np.zeros((0, 3))
-    reached = here.copy()
-    reached[axis] = bounds[axis, border]
-    return np.concatenate([[np.nan], reached])[None]
-
-
-def _clamped(parameters: Array, bounds: Array) -> Array:
-    """The parameters moved to the nearest border of the range."""
-    parts = np.abs(parameters[:, None] - bounds) / np.ptp(bounds, axis=1)[:, None]
-    axis, border = np.unravel_index(int(parts.argmin()), parts.shape)
-    moved = parameters.copy()
-    moved[axis] = bounds[axis, border]
-    return moved

@@ -64,7 +64,7 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
     raw = read_raw_panels(path, how)
     try:
-        reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance)
+        reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
     except OutlineError as error:
         if how.way not in REMEDIES:
             raise

@@ -13,14 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.BRepGProp import BRepGProp
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.gp import gp_Pnt2d
-from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
+from cadpanel.brep.areas import trimmed_areas
 from cadpanel.brep.boundary import Edge, sample_edges, unit_normals
 from cadpanel.brep.surface_batch import Indices, SurfaceBatch
 from cadpanel.reference.model import FaceSamples
@@ -123,8 +122,8 @@ def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
     full_areas[uneven] = fine.areas
     trimmed = _are_trimmed(edges, bounds)
     areas = full_areas.copy()
-    for face in np.flatnonzero(trimmed).tolist():
-        areas[face] = _exact_area(faces[face])
+    cut = np.flatnonzero(trimmed)
+    areas[cut] = trimmed_areas(faces, surfaces, cut, bounds)
     return _MeasuredFaces(
         faces=faces,
         surfaces=surfaces,
@@ -175,13 +174,6 @@ def _are_trimmed(edges: list[list[Edge]], bounds: Array) -> NDArray[np.bool_]:
         on_border = np.abs(parameters[:, :, None] - bounds[owners]) <= margin[owners][:, :, None]
         trimmed[owners[~on_border.any(axis=(1, 2))]] = True
     return trimmed
-
-
-def _exact_area(face: TopoDS_Face) -> float:
-    """Return the area of a trimmed face as the kernel integrates it, mm^2."""
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
-    return abs(float(properties.Mass()))
 
 
 def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
@@ -16,6 +16,7 @@ from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import make_interp_spline
 
+from cadpanel.brep.facets import FACET, SmoothCurve, corners, missed, smooth_curve
 from cadpanel.brep.slices import DEGREE
 from cadpanel.reference.polyline import norm, unit
 
@@ -47,12 +48,14 @@ class Piece:
         parameters: (q,) rising.
         points: (q, 3) there, mm.
         own_ends: whether its first and its last point are the curve's own ends, and not a sharp turn or a join.
+        beside: how far it runs beside the polyline that was drawn and stands for it, at most, mm.
     """
 
     at: Callable[[Array], Array]
     parameters: Array
     points: Array
     own_ends: tuple[bool, bool] = (True, True)
+    beside: float = 0.0
 
 
 def smooth_pieces(edge: TopoDS_Edge) -> tuple[Piece, ...]:
@@ -63,18 +66,37 @@ def smooth_pieces(edge: TopoDS_Edge) -> tuple[Piece, ...]:
     """
     curve = BRepAdaptor_Curve(edge)
     breaks = _breaks(curve)
-    ends = breaks[_sharp(curve, breaks)]
     knots = _knots(curve, breaks)
+    ends, facets = _turns(curve, breaks, knots)
     closed = bool(norm(np.diff(_values(curve, ends[[0, -1]]), axis=0))[0] <= CLOSE)
-    pieces = []
-    for place, (first, last) in enumerate(pairwise(ends.tolist())):
-        count = max(FEWEST_SEGMENTS, round(SEGMENTS * (last - first) / (ends[-1] - ends[0])))
-        inner = knots[(knots > first) & (knots < last)]
-        parameters = np.unique(np.concatenate([np.linspace(first, last, count + 1), inner]))
-        parameters, points = _refined(curve, parameters)
-        own = (place == 0 and not closed, place == len(ends) - 2 and not closed)
-        pieces.append(Piece(at=partial(_values, curve), parameters=parameters, points=points, own_ends=own))
+    pieces: list[Piece] = []
+    for first, last in pairwise(ends.tolist()):
+        share = (last - first) / (ends[-1] - ends[0])
+        inner = facets[(facets > first) & (facets < last)]
+        smooth = _smoothed(curve, breaks, knots, (first, last)) if len(inner) else None
+        if smooth is None:
+            for part in pairwise([first, *inner.tolist(), last]):
+                pieces.append(
+                    _piece(partial(_values, curve), part, knots, share * (part[1] - part[0]) / (last - first))
+                )
+        else:
+            own_knots = np.unique(smooth.spline.t)
+            pieces.append(
+                replace(_piece(smooth.spline, (own_knots[0], own_knots[-1]), own_knots, share), beside=smooth.off)
+            )
+    if not closed:
+        pieces[0] = replace(pieces[0], own_ends=(True, len(pieces) == 1))
+        pieces[-1] = replace(pieces[-1], own_ends=(len(pieces) == 1, True))
     return tuple(pieces)
+
+
+def _piece(at: Callable[[Array], Array], ends: tuple[float, float], knots: Array, share: float) -> Piece:
+    """The piece between two parameters, which is a share of the whole curve and has an end of its own at neither."""
+    first, last = ends
+    count = max(FEWEST_SEGMENTS, round(SEGMENTS * share))
+    parameters = np.union1d(np.linspace(first, last, count + 1), knots[(knots > first) & (knots < last)])
+    parameters, points = _refined(at, parameters)
+    return Piece(at=at, parameters=parameters, points=points, own_ends=(False, False))
 
 
 def piece_through(points: Array) -> Piece:
@@ -105,23 +127,33 @@ def _breaks(curve: BRepAdaptor_Curve) -> Array:
     return np.array([array.Value(place) for place in range(1, array.Length() + 1)])
 
 
-def _sharp(curve: BRepAdaptor_Curve, breaks: Array) -> NDArray[np.bool_]:
-    """Which breaks are sharp turns; both ends count as such."""
-    sharp = np.ones(len(breaks), dtype=np.bool_)
-    if len(breaks) > 2:
-        steps = BESIDE * np.diff(breaks)
-        before, after = (unit(_ways(curve, at)) for at in (breaks[1:-1] - steps[:-1], breaks[1:-1] + steps[1:]))
-        turns = 2.0 * np.arcsin(np.clip(0.5 * norm(after - before), 0.0, 1.0))
-        lengths = norm(np.diff(_values(curve, breaks), axis=0))
-        # The arc through three points of a polyline leaves its shorter side by an eighth of that times the turn.
-        missed = turns * np.minimum(lengths[:-1], lengths[1:]) / 8.0
-        sharp[1:-1] = missed > SHARP
-    return sharp
+def _turns(curve: BRepAdaptor_Curve, breaks: Array, knots: Array) -> tuple[Array, Array]:
+    """Of the breaks, those at which a piece ends, the curve's own ends among them; and the facets of a fine polyline.
+
+    All others are too small to tell.
+    """
+    if len(breaks) == 2:
+        return breaks, np.zeros(0)
+    steps = BESIDE * np.diff(breaks)
+    before, after = (unit(_ways(curve, at)) for at in (breaks[1:-1] - steps[:-1], breaks[1:-1] + steps[1:]))
+    off = missed(before, after, norm(np.diff(_values(curve, breaks), axis=0)))
+    sharp = np.concatenate([[True], off > SHARP, [True]])
+    facets = sharp & np.concatenate([[False], off <= FACET, [False]])
+    places = np.searchsorted(knots, breaks[facets])
+    facets[facets] = ~corners(_values(curve, knots), places)
+    return breaks[sharp & ~facets], breaks[facets]
+
+
+def _smoothed(curve: BRepAdaptor_Curve, breaks: Array, knots: Array, ends: tuple[float, float]) -> SmoothCurve | None:
+    """What a fine polyline between two of its corners stands for."""
+    within = knots[(knots >= ends[0]) & (knots <= ends[1])]
+    vertices = breaks[(breaks >= ends[0]) & (breaks <= ends[1])]
+    return smooth_curve(_values(curve, within), np.searchsorted(within, vertices))
 
 
 def _knots(curve: BRepAdaptor_Curve, breaks: Array) -> Array:
     """Parameters that must be among those of the points, so that no span of a spline is passed over."""
-    if curve.GetType() != GeomAbs_BSplineCurve:
+    if curve.GetType() != GeomAbs_BSplineCurve or curve.Degree() == 1:
         return breaks
     spline = curve.BSpline()
     knots = np.array([spline.Knot(place) for place in range(1, spline.NbKnots() + 1)])
@@ -130,9 +162,9 @@ def _knots(curve: BRepAdaptor_Curve, breaks: Array) -> Array:
     return np.union1d(breaks, within)
 
 
-def _refined(curve: BRepAdaptor_Curve, parameters: Array) -> tuple[Array, Array]:
+def _refined(at: Callable[[Array], Array], parameters: Array) -> tuple[Array, Array]:
     """Halve segments until none turns much against the next: (q,) parameters and (q, 3) points."""
-    points = _values(curve, parameters)
+    points = at(parameters)
     for _ in range(HALVINGS):
         ways = np.diff(points, axis=0)
         lengths = norm(ways)
@@ -147,5 +179,5 @@ def _refined(curve: BRepAdaptor_Curve, parameters: Array) -> tuple[Array, Array]
         middles = 0.5 * (parameters[:-1] + parameters[1:])[coarse]
         places = np.flatnonzero(coarse) + 1
         parameters = np.insert(parameters, places, middles)
-        points = np.insert(points, places, _values(curve, middles), axis=0)
+        points = np.insert(points, places, at(middles), axis=0)
     return parameters, points

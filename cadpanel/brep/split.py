@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
@@ -27,6 +28,8 @@ from OCP.TopTools import TopTools_ListOfShape
 from cadpanel.brep.model import shapes_of
 from cadpanel.errors import ReferenceFileError
 
+Array = NDArray[np.float64]
+
 FUZZY = 1e-3
 """How far a cut may end from the boundary that it should reach, mm."""
 LOST_AREA = 1e-6
@@ -36,7 +39,7 @@ LOST_AREA = 1e-6
 GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 INTEGRATED = 1e-8
-"""Relative error to which areas are integrated where it matters."""
+"""Relative error to which areas are integrated."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +48,7 @@ class Pieces:
 
     Attributes:
         faces: the pieces of each face, in the order given.
-        tools: the parts of each tool, in the order given; where a tool is an edge, they are edges of the pieces.
+        tools: the parts of each tool, in the order given; where a tool is an edge on the faces, edges of the pieces.
     """
 
     faces: tuple[tuple[TopoDS_Face, ...], ...]
@@ -67,41 +70,45 @@ def split_faces(faces: Sequence[TopoDS_Face], tools: Sequence[TopoDS_Shape], wha
     if not tools:  # the splitter fails without any
         return Pieces(faces=tuple((face,) for face in faces), tools=())
     splitter = BRepAlgoAPI_Splitter()
-    splitter.SetArguments(_listed(faces))
-    splitter.SetTools(_listed(tools))
+    splitter.SetArguments(listed(faces))
+    splitter.SetTools(listed(tools))
     splitter.SetFuzzyValue(fuzzy)
     try:
         splitter.Build()
         if not splitter.IsDone():
-            raise ReferenceFileError(_failed(what, "its splitter gives up"))
+            raise unsplit(what, "its splitter gives up")
         pieces = tuple(_results(splitter, face) for face in faces)
         used = tuple(tuple(splitter.Modified(tool)) or (tool,) for tool in tools)
     except Standard_Failure as error:
-        raise ReferenceFileError(_failed(what, str(error))) from error
+        raise unsplit(what, str(error)) from error
     for face, parts in zip(faces, pieces, strict=True):
-        whole, summed = area_of(face), sum(map(area_of, parts))
-        if abs(whole - summed) > LOST_AREA * whole:
-            whole, summed = area_of(face, exactly=True), sum(area_of(part, exactly=True) for part in parts)
-        if abs(whole - summed) > max(LOST_AREA * whole, _unsure_area(face)) and _lost(face, parts):
-            raise ReferenceFileError(_failed(what, f"of {whole:.6g} mm2, its pieces cover {summed:.6g} mm2"))
+        require_whole(face, parts, what)
     return Pieces(faces=pieces, tools=used)
 
 
-def area_of(shape: TopoDS_Shape, *, exactly: bool = False) -> float:
-    """Area as the kernel integrates it, mm^2; to about 1e-5 of it on splines, unless asked for exactly."""
+def require_whole(face: TopoDS_Face, parts: Sequence[TopoDS_Face], what: str) -> None:
+    """Refuse parts of a face that do not have its area.
+
+    Raises:
+        ReferenceFileError: they do not, beyond what the tolerances of the face's own edges leave open.
+    """
+    if not _lost(face, parts):
+        return
+    # A border that was joined with another one within the tolerance may lie elsewhere in the parameter plane.
+    whole, summed = area_of(face), sum(map(area_of, parts))
+    if abs(whole - summed) > max(LOST_AREA * whole, _unsure_area(face)):
+        raise unsplit(what, f"of {whole:.6g} mm2, its pieces cover {summed:.6g} mm2")
+
+
+def area_of(shape: TopoDS_Shape) -> float:
+    """Area as the kernel integrates it closely, which takes it milliseconds a face, mm^2."""
     properties = GProp_GProps()
-    if exactly:
-        BRepGProp.SurfaceProperties_s(shape, properties, INTEGRATED)
-    else:
-        BRepGProp.SurfaceProperties_s(shape, properties)
+    BRepGProp.SurfaceProperties_s(shape, properties, INTEGRATED)
     return abs(float(properties.Mass()))
 
 
 def _lost(face: TopoDS_Face, parts: Sequence[TopoDS_Face]) -> bool:
-    """Whether parts enclose less or more than a face, by what borders enclose in the parameter plane.
-
-    That is exact for splines, where the kernel's integration of areas may miss a border that waves.
-    """
+    """Whether parts enclose less or more than a face, by what borders enclose in the parameter plane."""
     whole, summed = _enclosed(face), sum(map(_enclosed, parts))
     return abs(whole - summed) > LOST_AREA * abs(whole)
 
@@ -150,15 +157,17 @@ def _results(splitter: BRepAlgoAPI_Splitter, face: TopoDS_Face) -> tuple[TopoDS_
     return parts or (face,)
 
 
-def _listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
+def listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
+    """Shapes as the kernel's list."""
     listed = TopTools_ListOfShape()
     for shape in shapes:
         listed.Append(shape)
     return listed
 
 
-def _failed(what: str, why: str) -> str:
-    return (
+def unsplit(what: str, why: str) -> ReferenceFileError:
+    """The error that says what the kernel cannot split, why, and what to do about it."""
+    return ReferenceFileError(
         f"The CAD kernel cannot split {what} ({why}): move the cuts a little, cut with a network of curves, "
         "or split the surface where it was modelled."
     )

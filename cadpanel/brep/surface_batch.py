@@ -7,12 +7,13 @@ NumPy; the kernel evaluates all others point by point.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.Geom import Geom_BSplineSurface
+from OCP.Geom import Geom_BSplineSurface, Geom_Surface
 from OCP.GeomAbs import GeomAbs_BezierSurface, GeomAbs_BSplineSurface
 from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Pnt, gp_Vec
@@ -39,13 +40,20 @@ class SurfaceBatch:
         self._group_of = np.full(len(surfaces), -1)
         self._place_of = np.zeros(len(surfaces), dtype=np.intp)
         self._periods = np.full((len(surfaces), 2, 2), [0.0, np.inf])
+        # Faces cut from one surface share its poles; the kernel's handles are kept, or others could take their place.
+        taken: dict[tuple[int, tuple[float, ...]], tuple[Geom_Surface, Geom_BSplineSurface, SplineSurface]] = {}
         members: dict[tuple[int, int, int], list[SplineSurface]] = {}
         kinds: list[tuple[int, int, int]] = []
         for face, surface in enumerate(surfaces):
-            spline = _spline(surface)
-            if spline is None:
+            if surface.GetType() not in (GeomAbs_BSplineSurface, GeomAbs_BezierSurface):
                 continue
-            own = _plain(surface, spline)
+            handle = surface.Surface().Surface()
+            place = (id(handle), _placement(surface))
+            if place not in taken:
+                found = _spline(surface)
+                taken[place] = (handle, found, _plain(found))
+            _, spline, whole = taken[place]
+            own = _trimmed(whole, surface, spline)
             for way, periodic in enumerate((spline.IsUPeriodic(), spline.IsVPeriodic())):
                 if periodic:
                     self._periods[face, way] = own.bounds[way, 0], np.ptp(own.bounds[way])
@@ -99,27 +107,22 @@ def kernel_values(surface: BRepAdaptor_Surface, parameters: Array) -> Array:
     return np.array(numbers, dtype=np.float64).reshape(-1, 3, 3)
 
 
-def _spline(surface: BRepAdaptor_Surface) -> Geom_BSplineSurface | None:
-    """The placed B-spline under a face, None where it is none."""
+def _placement(surface: BRepAdaptor_Surface) -> tuple[float, ...]:
+    """The 12 numbers of where a face's surface is placed."""
+    placed = surface.Trsf()
+    return tuple(placed.Value(row, column) for row in (1, 2, 3) for column in (1, 2, 3, 4))
+
+
+def _spline(surface: BRepAdaptor_Surface) -> Geom_BSplineSurface:
+    """The placed B-spline under a face on a B-spline or Bezier surface."""
     if surface.GetType() == GeomAbs_BSplineSurface:
         return surface.BSpline()
-    if surface.GetType() == GeomAbs_BezierSurface:
-        return GeomConvert.SurfaceToBSplineSurface_s(surface.Bezier())
-    return None
+    return GeomConvert.SurfaceToBSplineSurface_s(surface.Bezier())
 
 
-def _plain(surface: BRepAdaptor_Surface, spline: Geom_BSplineSurface) -> SplineSurface:
-    """The same as arrays, its periods cut open; the bounds are the face's, or a whole period."""
-    bounds = np.array(
-        [
-            [surface.FirstUParameter(), surface.LastUParameter()],
-            [surface.FirstVParameter(), surface.LastVParameter()],
-        ]
-    )
+def _plain(spline: Geom_BSplineSurface) -> SplineSurface:
+    """The same as arrays, its periods cut open; the bounds are those of the whole surface."""
     if spline.IsUPeriodic() or spline.IsVPeriodic():
-        periodic = spline.IsUPeriodic(), spline.IsVPeriodic()
-        u_first, u_last, v_first, v_last = spline.Bounds()
-        bounds[periodic, :] = np.array([[u_first, u_last], [v_first, v_last]])[periodic, :]
         spline = cast(Geom_BSplineSurface, spline.Copy())
         spline.SetUNotPeriodic()
         spline.SetVNotPeriodic()
@@ -133,8 +136,21 @@ def _plain(surface: BRepAdaptor_Surface, spline: Geom_BSplineSurface) -> SplineS
         degrees=(spline.UDegree(), spline.VDegree()),
         knots=(_numbers(spline.UKnotSequence()), _numbers(spline.VKnotSequence())),
         poles=poles.reshape(len(rows), len(columns), -1),
-        bounds=bounds,
+        bounds=np.array(spline.Bounds()).reshape(2, 2),
     )
+
+
+def _trimmed(whole: SplineSurface, surface: BRepAdaptor_Surface, spline: Geom_BSplineSurface) -> SplineSurface:
+    """A surface with the bounds of a face on it; in a way in which it is periodic, with those of a whole period."""
+    bounds = np.array(
+        [
+            [surface.FirstUParameter(), surface.LastUParameter()],
+            [surface.FirstVParameter(), surface.LastVParameter()],
+        ]
+    )
+    periodic = np.array([spline.IsUPeriodic(), spline.IsVPeriodic()])
+    bounds[periodic] = whole.bounds[periodic]
+    return replace(whole, bounds=bounds)
 
 
 def _numbers(array: TColStd_Array1OfReal) -> Array:

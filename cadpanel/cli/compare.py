@@ -35,6 +35,7 @@ def compare(
     spine: options.Spine = None,
     network: options.Network = None,
     mesh: options.Mesh = None,
+    junctions: options.Junctions = False,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -67,6 +68,7 @@ def compare(
         spine=spine,
         network=network,
         mesh=mesh,
+        junctions=junctions,
     )
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
         comparison = _run(reference, how, settings, shown)

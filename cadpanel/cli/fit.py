@@ -54,6 +54,7 @@ def fit(
     spine: options.Spine = None,
     network: options.Network = None,
     mesh: options.Mesh = None,
+    junctions: options.Junctions = False,
     schema: Annotated[Schema, typer.Option("--schema", help="Of the STEP files.")] = "AP242",
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
@@ -91,6 +92,7 @@ def fit(
         spine=spine,
         network=network,
         mesh=mesh,
+        junctions=junctions,
     )
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:

@@ -111,6 +111,13 @@ Network = Annotated[
     ),
 ]
 Mesh = Annotated[Path | None, typer.Option("--mesh", metavar="FILE", help="One panel a face of this OBJ or OFF mesh.")]
+Junctions = Annotated[
+    bool,
+    typer.Option(
+        "--junctions",
+        help="Part sides where corners of other panels lie on them, as in a brick bond; goes with planar-polygon.",
+    ),
+]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a delivery that stands there already.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.")]
 
@@ -170,6 +177,7 @@ def reference_settings(
     spine: Path | None,
     network: Path | None,
     mesh: Path | None,
+    junctions: bool,
 ) -> ReferenceSettings:
     """How the options ask for the reference to be read.
 
@@ -188,6 +196,7 @@ def reference_settings(
         spine=spine,
         network=network,
         mesh=mesh,
+        junctions=junctions,
     )
 
 

@@ -48,9 +48,12 @@ class SplineSurfaces:
         """Lay their poles and knots out for evaluation."""
         self._degrees = surfaces[0].degrees
         width = surfaces[0].poles.shape[-1]
-        self._poles = np.concatenate([surface.poles.reshape(-1, width) for surface in surfaces])
-        counts = [surface.poles.shape[0] * surface.poles.shape[1] for surface in surfaces]
-        self._first_poles = np.cumsum([0, *counts[:-1]])
+        # Parts of one surface may share their poles.
+        different = {id(surface.poles): surface.poles for surface in surfaces}
+        self._poles = np.concatenate([poles.reshape(-1, width) for poles in different.values()])
+        counts = [poles.shape[0] * poles.shape[1] for poles in different.values()]
+        first = dict(zip(different, np.cumsum([0, *counts[:-1]]).tolist(), strict=True))
+        self._first_poles = np.array([first[id(surface.poles)] for surface in surfaces])
         self._row_lengths = np.array([surface.poles.shape[1] for surface in surfaces])
         self._knots = tuple(_padded([surface.knots[way] for surface in surfaces]) for way in range(2))
         self._spans = tuple(np.array([_spans(surface, way) for surface in surfaces], dtype=np.intp) for way in range(2))

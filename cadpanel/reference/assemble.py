@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.contacts import after_flipping, find_contacts, refuse_duplicates
 from cadpanel.reference.ends import first_ends, outer_faces
+from cadpanel.reference.junctions import part_sides
 from cadpanel.reference.model import RawPanel, Reference
 from cadpanel.reference.orient import align, find_seams, orient
 from cadpanel.reference.outline import find_outline
@@ -24,7 +25,9 @@ SEAM_TOLERANCE = 1.0
 LARGEST_TOLERANCE = 0.4
 
 
-def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float = SEAM_TOLERANCE) -> Reference:
+def assemble(
+    raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float = SEAM_TOLERANCE, junctions: bool = False
+) -> Reference:
     """Return the reference that a file's panels make.
 
     The result does not depend on the order of panels, faces and edges, nor on the side of the faces' normals: panels
@@ -34,6 +37,7 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
         raw_panels: the panels as sampled, each with a name of its own.
         source: the file's name, kept and used in messages.
         seam_tolerance: how far the ends of two panels that meet may lie apart, mm.
+        junctions: part the sides of panels where corners of others lie on them?
 
     Raises:
         ReferenceFileError: there are no panels.
@@ -44,7 +48,10 @@ def assemble(raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float 
         raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance!r}.")
     if not raw_panels:
         raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
-    sheets = [sheet(raw, find_outline(raw, source)) for raw in raw_panels]
+    outlines = [find_outline(raw, source) for raw in raw_panels]
+    if junctions:
+        outlines = part_sides(outlines, seam_tolerance)
+    sheets = [sheet(raw, outline) for raw, outline in zip(raw_panels, outlines, strict=True)]
     _check_tolerance(sheets, seam_tolerance)
     refuse_duplicates(sheets, source, seam_tolerance)
     contacts = find_contacts(sheets, source, seam_tolerance)

@@ -46,6 +46,7 @@ class ReferenceSettings:
         spine: a file with the curve along which the stations are measured; the middle of the strip if None.
         network: a file with curves that cut the surface; the reference itself if its own loose curves do.
         mesh: an OBJ or OFF file whose faces become panels.
+        junctions: part the sides of panels where corners of others lie on them, as in a brick bond?
     """
 
     seam_tolerance: float = 1.0
@@ -59,6 +60,7 @@ class ReferenceSettings:
     spine: Path | None = None
     network: Path | None = None
     mesh: Path | None = None
+    junctions: bool = False
 
     def __post_init__(self) -> None:
         """Check every setting, and bring lists and paths into one form.
@@ -90,6 +92,8 @@ class ReferenceSettings:
                 raise SettingsError("a band about the lip is divided along its length: give the number of panels, too")
         if self.by != "length" and self.grid is None:
             raise SettingsError("'by' says how a grid is cut: give a grid, too")
+        if not _is_switch(self.junctions):
+            raise SettingsError(f"'junctions' is yes or no, True or False, not {self.junctions!r}")
         if self.spine is not None and self.stations is None:
             raise SettingsError("a spine is what stations are measured along: give stations, too")
 

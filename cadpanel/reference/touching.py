@@ -113,7 +113,7 @@ def split_at_vertices(edges: Sequence[Edge], tolerance: float) -> list[Edge]:
     vertices = np.array([end for edge in edges for end in (edge.points[0], edge.points[-1])])
     pieces = []
     for edge in edges:
-        cuts = _positions_on(edge, vertices, tolerance)
+        cuts = positions_on(edge, vertices, tolerance)
         borders = [0.0, *cuts, edge.length]
         for start, stop in pairwise(borders):
             points, normals = edge.at(np.linspace(start, stop, PIECE_POINTS))
@@ -140,7 +140,7 @@ def _coincide(first: Edge, second: Edge, tolerance: float) -> bool | None:
     return None
 
 
-def _positions_on(edge: Edge, vertices: Array, tolerance: float) -> list[float]:
+def positions_on(edge: Edge, vertices: Array, tolerance: float) -> list[float]:
     """Return the rising arc lengths at which vertices lie on the inside of an edge, each place once."""
     # Half a tolerance is finer than anything that is told apart here, and the edge between its points is smooth.
     count = max(len(edge.points), PIECE_POINTS) * 2

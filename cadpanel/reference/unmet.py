@@ -73,7 +73,7 @@ def _touching_note(pairs: Sequence[tuple[str, str]], source: str) -> tuple[str, 
     many = f"{len(pairs)} pairs of panels" if len(pairs) > 1 else "Two panels"
     return (
         f"{many} of '{source}' touch along a part of an edge only, like '{first}' and '{second}': no seam is held "
-        "there; cut both sides at the same places.",
+        "there; cut both sides at the same places, or give --junctions and --feature planar-polygon.",
     )
 
 

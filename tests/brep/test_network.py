@@ -1,4 +1,5 @@
 import re
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -235,6 +236,35 @@ def test_mesh_whose_faces_have_corners_of_their_own_is_welded_with_a_note(folder
     assert "12 corners of 'mesh.obj' lie within 1 mm of another one and count as one." in found.notes
     with pytest.raises(ReferenceFileError, match=r"has 6 faces, but the edges between them cut 'plane.brep' into"):
         panels_of_plane(folder, "\n".join(rows), seam_tolerance=0.1)
+
+
+def bricks(shift=0.0):
+    """Two rows of bricks over the plane of 9 by 4 m as an OBJ mesh, each with corners of its own.
+
+    The corners of the upper row lie off the lower row's edges by `shift`, as a part of a brick's length.
+    """
+    rows: list[str] = []
+    faces: list[str] = []
+    for low, joints in ((0, (0, 3000, 6000, 9000)), (2000, (0, 1500, 4500, 7500, 9000))):
+        for first, last in pairwise(joints):
+            off = 3000.0 * shift if low else 0.0
+            square = [(first, low + off), (last, low + off), (last, low + 2000), (first, low + 2000)]
+            faces.append("f " + " ".join(str(len(rows) + k) for k in range(1, 5)))
+            rows += [f"v {x} {y} 0" for x, y in square]
+    return "\n".join([*rows, *faces])
+
+
+def test_edges_of_a_mesh_are_parted_at_the_corners_of_other_faces_on_them(folder):
+    found = panels_of_plane(folder, bricks())
+    assert len(found.panels) == 7
+    areas = sorted(sum(face.weights.sum() for face in panel.faces) for panel in found.panels)
+    assert areas == pytest.approx(2 * [3e6] + 5 * [6e6])
+    assert any(re.match(r"\d edges of 'mesh.obj' are parted where corners", note) for note in found.notes)
+
+
+def test_corners_beside_an_edge_part_nothing(folder):
+    with pytest.raises(ReferenceFileError, match="over the surface"):
+        panels_of_plane(folder, bricks(shift=0.1))
 
 
 def test_face_of_a_mesh_with_two_corners_in_one_place_loses_one(folder):

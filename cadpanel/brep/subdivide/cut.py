@@ -140,6 +140,12 @@ def _cut_by_curves(
         what = f"the surface of {whole.numbers} of '{source}'"
         panels += cut_network(surface, curves, landing, what, curve_source, remedy, tolerance)
     farthest, offset = max(enumerate(landing.offset for landing in landings), key=lambda landed: landed[1])
+    fine = [curve for curve in curves if curve.beside > WORTH_A_NOTE]
+    if fine:
+        which = f"{fine[0].called} of '{curve_source}'" if len(fine) == 1 else f"{len(fine)} curves of '{curve_source}'"
+        beside = max(curve.beside for curve in fine)
+        found = f"The segments of {which} stand for a smooth curve, which passes up to {beside:.2g} mm beside them."
+        notes = (*notes, found)
     if offset > WORTH_A_NOTE:
         off = "the surface" if len(landings) == 1 else f"the surface of {skin.surfaces[farthest].numbers}"
         found = f"The curves of '{curve_source}' lie up to {offset:.3g} mm off {off} and were projected onto it."

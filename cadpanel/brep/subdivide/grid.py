@@ -16,7 +16,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.patch import CLOSED, Patch, equal_parts, geometry, lengths_along, rectangle
-from cadpanel.brep.split import split_faces
+from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.panel import CutPanel, grid_name
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import By
@@ -99,7 +99,7 @@ def _whole_cells(patch: Patch, lines: list[Array]) -> list[tuple[int, int, TopoD
 def _trimmed_cells(patch: Patch, lines: list[Array], what: str) -> list[tuple[int, int, TopoDS_Face]]:
     """The pieces of a trimmed face between the lines, each with its cell."""
     tools = [line_edge(patch, axis, place) for axis in (0, 1) for place in lines[axis][1:-1].tolist()]
-    pieces = split_faces([patch.face], tools, what).faces[0] if tools else (patch.face,)
+    pieces = split_along([patch.face], tools, what).faces[0] if tools else (patch.face,)
     cells = []
     for piece in pieces:
         bounds = np.array(BRepTools.UVBounds_s(piece)).reshape(2, 2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,10 +18,10 @@ from cadpanel.brep import kernel
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
-from cadpanel.brep.model import compound_of
-from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.smooth import Piece
+from cadpanel.brep.subdivide.hanging import parted
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
-from cadpanel.brep.subdivide.panel import CutPanel
+from cadpanel.brep.subdivide.panel import CutPanel, middle_of
 from cadpanel.brep.subdivide.weld import welded
 from cadpanel.errors import ReferenceFileError
 
@@ -33,8 +34,8 @@ FEWEST_CORNERS = 3
 GIVE_UNIT = "give the mesh's unit with --unit where that is not mm"
 LAY_OVER = f"lay the mesh over the surface, up to its outline all round, and {GIVE_UNIT}"
 """What to do about a mesh whose edges do not cut the surface into its faces."""
-# Points along an edge that are brought onto the surface.
-POINTS = 33
+# Points along an edge that are brought onto the surface at first, as parts of its length.
+PARTS = np.linspace(0.0, 1.0, 9)
 
 
 class _Edge(Curve):
@@ -72,13 +73,15 @@ class Mesh:
             way = DRAWN_ON * (last - first)
             start = first - way if edge[0] in on_border else first
             stop = last + way if edge[1] in on_border else last
-            parts = np.linspace(0.0, 1.0, POINTS)[:, None]
+            along = partial(_along, start, stop)
+            piece = Piece(at=along, parameters=PARTS, points=along(PARTS))
             found.append(
                 _Edge(
                     number=len(found) + 1,
                     name=f"from corner {edge[0] + 1} to {edge[1] + 1}",
                     edge=BRepBuilderAPI_MakeEdge(kernel.point(start), kernel.point(stop)).Edge(),
-                    points=start + parts * (stop - start),
+                    points=piece.points,
+                    parts=(piece,),
                 )
             )
         return tuple(found)
@@ -115,9 +118,12 @@ def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: f
     fault = f"has fewer than three corners, or one twice, as those within {tolerance:g} mm of each other are the same"
     _check_corners(path.name, shared, len(points), fault)
     _check_edges(path.name, shared)
+    shared, edges = parted(points, shared)
     notes = [] if millimetres else [no_unit(path.name, "mesh")]
     if joined:
         notes.append(f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as one.")
+    if edges:
+        notes.append(f"{edges} edges of '{path.name}' are parted where corners of other faces lie on them.")
     return Mesh(corners=points, faces=shared, notes=tuple(notes))
 
 
@@ -132,8 +138,7 @@ def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str,
             f"The mesh '{mesh_source}' has {len(mesh.faces)} faces, but the edges between them cut '{source}' into "
             f"{len(panels)} panels: {LAY_OVER}."
         )
-    samples = [np.concatenate([face.points for face in sample_faces(compound_of(panel.faces))]) for panel in panels]
-    _, nearest = cKDTree(mesh.middles()).query(np.array([points.mean(axis=0) for points in samples]))
+    _, nearest = cKDTree(mesh.middles()).query(np.array([middle_of(panel.faces) for panel in panels]))
     alone = np.bincount(nearest, minlength=len(mesh.faces))
     if alone.max() > 1:
         raise ReferenceFileError(
@@ -155,6 +160,11 @@ def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
         raise ReferenceFileError(
             f"{count} faces of '{name}' share the edge from corner {first + 1} to {last + 1}: at most two panels can."
         )
+
+
+def _along(start: Array, stop: Array, parts: Array) -> Array:
+    """(m, 3) points at (m,) parts of the way."""
+    return start + parts[:, None] * (stop - start)
 
 
 def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:

@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_INTERNAL
-from OCP.TopExp import TopExp
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_INTERNAL
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
-from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
-from cadpanel.brep.model import compound_of, shapes_of
+from cadpanel.brep.model import shapes_of
 from cadpanel.brep.project import Landing
-from cadpanel.brep.sampling import sample_faces
-from cadpanel.brep.split import Pieces, length_of, split_faces
-from cadpanel.brep.subdivide.panel import CutPanel, along_panels
+from cadpanel.brep.split import Pieces, length_of
+from cadpanel.brep.split_edges import split_along
+from cadpanel.brep.subdivide.panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
 
@@ -97,11 +96,11 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
     owners = [(index, edge) for index, parts in enumerate(tools) for edge in parts]
     cut: _Cut | None = None
     for part in FUZZY_PARTS:
-        pieces = split_faces(faces, [edge for _, edge in owners], what, part * tolerance)
+        pieces = split_along(faces, [edge for _, edge in owners], what, part * tolerance)
         cut = _looked_at(pieces, owners)
         if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
             kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
-            pieces = split_faces(faces, [edge for _, edge in kept], what, part * tolerance)
+            pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept)
         if not cut.loose:
             break
@@ -123,36 +122,32 @@ def _without(
 
 def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cut:
     faces = tuple(face for parts in pieces.faces for face in parts)
-    numbers = {hash(face): index for index, face in enumerate(faces)}
-    around = TopTools_IndexedDataMapOfShapeListOfShape()
-    TopExp.MapShapesAndAncestors_s(compound_of(faces), TopAbs_EDGE, TopAbs_FACE, around)
+    around: dict[int, list[int]] = defaultdict(list)
+    edges: dict[int, TopoDS_Edge] = {}
     # A curve that ends inside a piece is kept there as an edge on none of its borders.
-    inner = {
-        hash(edge) for face in faces for edge in shapes_of(face, TopAbs_EDGE) if edge.Orientation() == TopAbs_INTERNAL
-    }
+    inner: set[int] = set()
+    for place, face in enumerate(faces):
+        for shape in shapes_of(face, TopAbs_EDGE):
+            edge = hash(shape)
+            around[edge].append(place)
+            edges.setdefault(edge, TopoDS.Edge_s(shape))
+            if shape.Orientation() == TopAbs_INTERNAL:
+                inner.add(edge)
     curve_edges: set[int] = set()
     loose: list[tuple[int, TopoDS_Edge]] = []
     for (index, _), parts in zip(owners, pieces.tools, strict=True):
         for part in parts:
             curve_edges.add(hash(part))
-            users = _users(around, part, numbers)
+            users = around.get(hash(part), [])
             # Twice in one piece: the piece lies on both sides. In no piece: the kernel left the curve out.
             if not users or hash(part) in inner or (len(users) == 2 and users[0] == users[1]):
                 loose.append((index, TopoDS.Edge_s(part)))
-    links = []
-    for place in range(1, around.Extent() + 1):
-        edge = around.FindKey(place)
-        users = _users(around, edge, numbers)
-        if len(users) == 2 and users[0] != users[1]:
-            links.append((users[0], users[1], TopoDS.Edge_s(edge), hash(edge) in curve_edges))
+    links = [
+        (users[0], users[1], edges[edge], edge in curve_edges)
+        for edge, users in around.items()
+        if len(users) == 2 and users[0] != users[1]
+    ]
     return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))))
-
-
-def _users(around: TopTools_IndexedDataMapOfShapeListOfShape, edge: TopoDS_Shape, numbers: dict[int, int]) -> list[int]:
-    """The pieces that an edge bounds, one of them twice where it lies on both its sides."""
-    if not around.Contains(edge):
-        return []
-    return [numbers[hash(face)] for face in around.FindFromKey(edge)]
 
 
 def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:
@@ -162,10 +157,7 @@ def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:
     graph = coo_array((np.ones(len(inner)), (inner[:, 0], inner[:, 1])), shape=(count, count))
     number, group = connected_components(graph, directed=False)
     groups = [[cut.faces[index] for index in np.flatnonzero(group == place)] for place in range(number)]
-    samples = [sample_faces(compound_of(faces)) for faces in groups]
-    points = [np.concatenate([face.points for face in faces]) for faces in samples]
-    weights = [np.concatenate([face.weights for face in faces]) for faces in samples]
-    middles = np.array([w @ p / w.sum() for w, p in zip(weights, points, strict=True)])
+    middles = np.array([middle_of(faces) for faces in groups])
     links = [
         Link(panels=(int(group[first]), int(group[second])), middle=_middle(edge), length=length_of(edge))
         for first, second, edge, made in cut.links

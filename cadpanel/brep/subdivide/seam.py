@@ -10,7 +10,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.patch import Patch, patch_of, rectangle
-from cadpanel.brep.split import split_faces
+from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.grid import line_edge
 
 
@@ -44,7 +44,7 @@ def _opened(face: SkinFace, source: str) -> list[SkinFace]:
 def _halves(patch: Patch, axis: int, what: str) -> tuple[TopoDS_Face, ...]:
     middle = float(patch.bounds[axis].mean())
     if not patch.whole:
-        return split_faces([patch.face], [line_edge(patch, axis, middle)], what).faces[0]
+        return split_along([patch.face], [line_edge(patch, axis, middle)], what).faces[0]
     ranges = [tuple(own) for own in patch.bounds.tolist()]
     low, high = ranges[axis]
     return tuple(

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.brep.clean import SkinFace, measure
 from cadpanel.brep.connect import Surface, surfaces_of
-from cadpanel.brep.lips import follow_lip
+from cadpanel.brep.lips import Lip, follow_lip, lips_midway
 from cadpanel.brep.patch import rectangle
 from cadpanel.brep.project import land
 from cadpanel.brep.sections import CrossSection, Sections, sections_of
@@ -31,6 +31,10 @@ BEYOND = 0.008
 BORDER_POINTS = 513
 # A band along parameter lines may be off its width by this part of it.
 EVEN = 0.01
+# Two lips turn alike where the lesser turn is no less than this part of the other.
+ALIKE = 0.9
+# Lips are two where their middles are farther apart than this part of their widths together; side by side it is 0.5.
+APART = 0.6
 # The band's borders come from points on the surface and leave it no farther than this part of the strip's length.
 NEAR_PART = 1e-3
 NEAR = 1.0
@@ -39,8 +43,8 @@ MOST = 0.9
 CLOUD_ACROSS, CLOUD_ALONG = 401, 201
 
 
-def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> Surface:
-    """The part of a strip within half a width of its lip's middle, both ways.
+def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> tuple[Surface, tuple[str, ...]]:
+    """The part of a strip within half a width of the middle of its lip, or of that which turns most, both ways.
 
     Args:
         surface: a strip.
@@ -48,17 +52,22 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> S
         source: the reference's name.
         tolerance: how far faces that meet may lie apart, mm.
 
+    Returns:
+        The band, and a note where there are further lips.
+
     Raises:
-        ReferenceFileError: the surface is no strip or has no lip, the band reaches beyond the surface, or the kernel
-            cannot cut it out.
+        ReferenceFileError: the surface is no strip, has no lip or two that turn alike, the band reaches beyond the
+            surface, or the kernel cannot cut it out.
     """
     sections = sections_of(surface, PLACES, source)
-    middles = follow_lip(sections)
-    if middles is None:
+    lips = sorted(lips_midway(sections), key=lambda lip: -lip.turn)
+    if not lips:
         raise ReferenceFileError(
             f"The surface of {surface.numbers} of '{source}' has no lip, a stretch across it that turns fast: "
             "divide all of it."
         )
+    notes = _other_lips(lips, surface, width, source)
+    middles = follow_lip(sections, lips[0])
     square = _square_to_the_lip(sections, middles)
     borders = np.array(
         [
@@ -72,7 +81,40 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> S
         what = f"the surface of {surface.numbers} of '{source}' along its lip"
         pieces = _cut_along_curves(surface, sections, borders, what, tolerance)
         faces = _within(pieces, surface, _cloud(sections, square), 0.5 * width, source)
-    return _joined(faces, surface, source, tolerance)
+    return _joined(faces, surface, source, tolerance), notes
+
+
+def _other_lips(lips: Sequence[Lip], surface: Surface, width: float, source: str) -> tuple[str, ...]:
+    """What to say of lips beside the first one, which turns most.
+
+    Raises:
+        ReferenceFileError: one of them turns as much, and the band holds only one of the two.
+    """
+    chief = lips[0]
+    # Two stretches next to each other are one lip, in the midst of which a spline turns less for a moment.
+    others = [lip for lip in lips[1:] if abs(lip.middle - chief.middle) > APART * (chief.width + lip.width)]
+    for lip in others:
+        if lip.turn >= ALIKE * chief.turn and abs(lip.middle - chief.middle) > 0.5 * width:
+            first, second = sorted((chief, lip), key=lambda one: one.middle)
+            raise ReferenceFileError(
+                f"The surface of {surface.numbers} of '{source}' has two lips that turn alike, by {first.turn:.0f} and "
+                f"{second.turn:.0f} degrees at {first.middle:.0f} and {second.middle:.0f} mm from its long edge: "
+                f"{_chosen(surface)}."
+            )
+    if not others:
+        return ()
+    most = f"another one, which turns by {others[0].turn:.0f}" if len(others) == 1 else f"{len(others)} others"
+    where = f"that turns by {chief.turn:.0f} degrees, {chief.middle:.0f} mm from its long edge"
+    return (
+        f"The band on the surface of {surface.numbers} of '{source}' lies about the lip {where}, and not about {most}; "
+        f"for another band, {_chosen(surface)}.",
+    )
+
+
+def _chosen(surface: Surface) -> str:
+    """What to do for the band about one lip of several."""
+    split = "split it between its lips where it was modelled, and " if len(surface.faces) == 1 else ""
+    return f"{split}choose the faces of the lip that is meant"
 
 
 def _square_to_the_lip(sections: Sections, middles: Array) -> list[Array]:

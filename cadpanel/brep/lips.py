@@ -65,20 +65,22 @@ def lips_of(length: Array, turn: Array) -> tuple[Lip, ...]:
     return tuple(lips)
 
 
-def follow_lip(sections: Sections) -> Array | None:
-    """(n,) the middle of the lip that turns most, section by section, mm from the first long edge.
+def lips_midway(sections: Sections) -> tuple[Lip, ...]:
+    """The lips of the middle section, or of all in the mean where that has none."""
+    section = sections.sections[len(sections.sections) // 2]
+    return lips_of(section.length, section.turn) or lips_of(*sections.mean)
 
-    The lip is found in the middle section and followed from there both ways: in each section the middle is where half
-    of what turns about the lip's last place has turned. None where there is no lip.
+
+def follow_lip(sections: Sections, lip: Lip) -> Array:
+    """(n,) the middle of a lip of the middle section, section by section, mm from the first long edge.
+
+    It is followed from there both ways: in each section the middle is where half of what turns about the lip's last
+    place has turned.
     """
     start = len(sections.sections) // 2
     section = sections.sections[start]
-    lips = lips_of(section.length, section.turn) or lips_of(*sections.mean)
-    if not lips:
-        return None
-    chief = max(lips, key=lambda lip: lip.turn)
-    reach = max(chief.width, LEAST_REACH * float(section.length[-1])) / section.length[-1]
-    shares = np.full(len(sections.sections), chief.middle / section.length[-1])
+    reach = max(lip.width, LEAST_REACH * float(section.length[-1])) / section.length[-1]
+    shares = np.full(len(sections.sections), lip.middle / section.length[-1])
     for indices in (range(start, len(shares)), range(start, -1, -1)):
         share = float(shares[start])
         for index in indices:

@@ -102,9 +102,10 @@ def find_strip(surface: Surface, source: str) -> Strip:
     try:
         sides = find_outline(raw, source).sides
     except OutlineError as error:
+        fewer = "choose fewer faces, or " if len(surface.faces) > 1 else ""
         raise ReferenceFileError(
             f"The surface of {surface.numbers} of '{source}' is no strip that could be divided along its length "
-            f"({error.fault}): {CUT_OTHERWISE}."
+            f"({error.fault}): {fewer}{CUT_OTHERWISE}."
         ) from error
     if len(sides) != SIDES:
         raise ReferenceFileError(

@@ -8,11 +8,10 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from cadpanel.errors import OutlineError, PanelError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_lengths, end_tangents, interpolate, norm, unit
+from cadpanel.reference.polyline import arc_lengths, distances_to_polylines, end_tangents, interpolate, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
@@ -80,7 +79,7 @@ def find_outline(panel: RawPanel, source: str) -> Outline:
         loops, loose = _chain(free, tolerance)
         if len(loops) != 1 or loose or len(signs) < len(panel.faces):
             _refuse_hairs(panel, source, tolerance)
-            _check_loops(panel, source, signs, free, loops, loose)
+            _check_loops(panel, source, signs, free, loops, loose, tolerance)
     loop = [replace(edge, normals=signs[edge.face] * edge.normals) for edge in loops[0]]
     sides = _cut_at_corners(loop, panel, source, tolerance)
     return Outline(sides=sides, face_signs=tuple(signs[face] for face in range(len(panel.faces))))
@@ -187,17 +186,19 @@ def _check_loops(
     free: Sequence[Edge],
     loops: Sequence[Sequence[Edge]],
     loose: Sequence[Array],
+    tolerance: float,
 ) -> None:
     """Say why a panel's free edges do not form one closed outline, where they do not."""
     count = len(panel.faces)
     if len(signs) < count:
-        raise OutlineError(
-            panel.name,
-            source,
-            f"only {len(signs)} of its {count} faces touch each other along an edge, the nearest other one is "
-            f"{_gap(panel, signs):.3g} mm away",
-            "join the faces, or export them as panels of their own",
+        gap = _gap(panel, signs)
+        touch = f"only {len(signs)} of its {count} faces touch each other along"
+        fault = (
+            f"{touch} whole edges"
+            if gap <= tolerance
+            else f"{touch} an edge, the nearest other one is {gap:.3g} mm away"
         )
+        raise OutlineError(panel.name, source, fault, "join the faces, or export them as panels of their own")
     if not free:
         fault = "it is a closed surface without an outline"
         raise OutlineError(panel.name, source, fault, "export an open sheet of four sides")
@@ -211,15 +212,15 @@ def _check_loops(
 
 
 def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
-    """Least distance between the edge points of the connected faces and those of the others, mm."""
+    """Least distance from the edges of the connected faces to the points of those of the others, mm."""
     inside, outside = (
         [edge for face, samples in enumerate(panel.faces) if (face in connected) == side for edge in samples.edges]
         for side in (True, False)
     )
     if not inside or not outside:
         return float("inf")
-    distances, _ = cKDTree(np.concatenate(inside)).query(np.concatenate(outside))
-    return float(np.min(distances))
+    points = np.concatenate(outside)[None]
+    return min(float(distances_to_polylines(points, edge[None]).min()) for edge in inside)
 
 
 def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, tolerance: float) -> tuple[Side, ...]:

@@ -15,7 +15,7 @@ import cadpanel as cp
 from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.split import area_of
 from cadpanel.errors import ReferenceFileError
-from tests.brep.test_subdivide import EQUAL, model_of, panels_of
+from tests.brep.test_subdivide import EQUAL, cut, model_of, panels_of
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
 
@@ -123,6 +123,100 @@ def test_a_lip_beside_a_long_edge_has_no_band_on_that_side():
     with pytest.raises(ReferenceFileError, match=r"runs over its long edge: give less than 42\d"):
         panels_of(model_of(*faces), divide=3, lip=600.0)
     assert len(panels_of(model_of(*faces), divide=3, lip=400.0)) == 3
+
+
+def folds(*turns, radius=100.0, between=500.0):
+    """A strip of flanges with arcs between them that turn by so many degrees, alternately down and up.
+
+    Flanges lie over u from 0 to 1, 2 to 3 and so on.
+    """
+
+    def surface(u, v):
+        y, z, angle = np.zeros_like(u), np.zeros_like(u), 0.0
+        for place, turn in enumerate([*turns, 0.0]):
+            flat = (between if 0 < place < len(turns) else 500.0) * np.clip(u - 2 * place, 0.0, 1.0)
+            y, z = y + flat * math.cos(angle), z + flat * math.sin(angle)
+            bend = math.radians(turn) * (-1.0 if place % 2 == 0 else 1.0)
+            side = math.copysign(radius, bend)
+            turned = angle + bend * np.clip(u - 2 * place - 1, 0.0, 1.0)
+            y = y + side * (np.sin(turned) - math.sin(angle))
+            z = z - side * (np.cos(turned) - math.cos(angle))
+            angle += bend
+        return np.stack([LENGTH * v, y, z], axis=-1)
+
+    return surface
+
+
+def faces_between(surface, *cuts):
+    return [kernel_face(surface, ends, poles=24) for ends in pairwise(cuts)]
+
+
+def test_a_band_about_one_of_two_lips_that_turn_alike_is_refused_until_its_faces_are_chosen():
+    model = model_of(*faces_between(folds(60.0, 62.0), 0.0, 1.0, 2.0, 2.5, 3.0, 4.0, 5.0))
+    sentence = (
+        r"has two lips that turn alike, by 60 and 62 degrees at 5\d\d and 11\d\d mm .*: choose the faces of the lip"
+    )
+    with pytest.raises(ReferenceFileError, match=sentence):
+        panels_of(model, divide=3, lip=300.0)
+    for chosen in ("1-3", "4-6"):
+        panels = panels_of(model, divide=3, lip=300.0, faces=(chosen,))
+        assert sum(area_of(face) for panel in panels for face in panel.faces) == pytest.approx(
+            300.0 * LENGTH, rel=EQUAL
+        )
+
+
+def test_a_face_with_two_lips_is_to_be_split_first():
+    with pytest.raises(
+        ReferenceFileError, match=r"turn alike, .*: split it between its lips where it was modelled, and"
+    ):
+        panels_of(model_of(kernel_face(folds(60.0, 60.0), (0.0, 5.0), poles=80)), divide=3, lip=300.0)
+
+
+def test_a_band_about_the_greater_of_two_lips_says_so():
+    faces = faces_between(folds(40.0, 80.0), 0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    panels, notes = cut(model_of(*faces), divide=3, lip=300.0)
+    (note,) = notes
+    assert "lies about the lip that turns by 80 degrees" in note
+    assert "and not about another one, which turns by 40; for another band, choose the faces of the lip" in note
+    (only,) = {len(panel.faces) for panel in panels}
+    assert only == 3
+
+
+def test_two_bends_in_one_band_are_no_question():
+    faces = faces_between(folds(60.0, 60.0, between=100.0), 0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    panels, notes = cut(model_of(*faces), divide=3, lip=600.0)
+    assert len(panels) == 3
+    assert len(notes) == 1
+
+
+def test_a_lip_that_turns_less_for_a_moment_in_its_midst_is_one():
+    faces = faces_between(folds(-40.0, 40.0, between=12.0), 0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
+    panels, notes = cut(model_of(*faces), divide=3, lip=100.0)
+    assert len(panels) == 3
+    assert notes == ()
+
+
+@pytest.mark.parametrize("kink", [0.0, 8.0])
+def test_a_band_goes_on_over_faces_that_lie_end_to_end_and_hold_the_lip_each(kink):
+    """Straight on, or in two lines that meet in a kink."""
+
+    def half(start, aside):
+        bent = fold(sweep=math.radians(aside))
+        return kernel_face(lambda u, v: bent(u, 0.5 * v) + np.array([start, 0.0, 0.0]), poles=60)
+
+    panels = panels_of(model_of(half(0.0, 0.0), half(0.5 * LENGTH, kink)), divide=4, lip=500.0)
+    area = sum(area_of(face) for panel in panels for face in panel.faces)
+    assert area == pytest.approx(250.0 * LENGTH * (1.0 + 1.0 / math.cos(math.radians(kink))), rel=5e-3)
+
+
+def test_faces_end_to_end_whose_lips_do_not_meet_are_each_a_strip_of_their_own():
+    first = kernel_face(lambda u, v: folds(60.0)(u, 0.5 * v), poles=60)
+    second = kernel_face(lambda u, v: folds(60.0)(u, 0.5 + 0.5 * v) + np.array([0.0, 200.0, 0.0]), poles=60)
+    model = model_of(first, second)
+    sentence = r"no strip .*only 1 of its 2 faces touch each other along whole edges\): choose fewer faces, or cut it"
+    with pytest.raises(ReferenceFileError, match=sentence):
+        panels_of(model, divide=2, lip=300.0)
+    assert [len(panels_of(model, divide=2, lip=300.0, faces=(face,))) for face in "12"] == [2, 2]
 
 
 def test_strips_side_by_side_are_named_in_order_however_their_middles_are_rounded():

@@ -14,7 +14,7 @@ from cadpanel.brep.model import Model
 from cadpanel.brep.project import land_curves
 from cadpanel.brep.strip import CUT_OTHERWISE
 from cadpanel.brep.subdivide.grid import cut_grid
-from cadpanel.brep.subdivide.lengths import cut_lengths
+from cadpanel.brep.subdivide.lengths import cut_lengths, cut_lip
 from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.subdivide.panel import CutPanel
@@ -73,10 +73,17 @@ def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceS
 
 def _lengths(skin: _Skin) -> Cut:
     count, lip = skin.settings.divide or 1, skin.settings.lip
-    cut = [
-        cut_lengths(surface, count, lip, skin.model.source, skin.settings.seam_tolerance) for surface in skin.surfaces
-    ]
-    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+    source, tolerance = skin.model.source, skin.settings.seam_tolerance
+    panels: list[CutPanel] = []
+    notes: list[str] = []
+    for surface in skin.surfaces:
+        if lip is None:
+            panels += cut_lengths(surface, count, source, tolerance)
+        else:
+            of_band, found = cut_lip(surface, count, lip, source, tolerance)
+            panels += of_band
+            notes += found
+    return Cut(panels=tuple(panels), notes=tuple(notes))
 
 
 def _grid(skin: _Skin) -> Cut:

@@ -14,7 +14,22 @@ from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.errors import ReferenceFileError
 
 
-def cut_lengths(surface: Surface, count: int, lip: float | None, source: str, tolerance: float) -> tuple[CutPanel, ...]:
+def cut_lip(
+    surface: Surface, count: int, width: float, source: str, tolerance: float
+) -> tuple[tuple[CutPanel, ...], tuple[str, ...]]:
+    """Cut the band of a width about a strip's lip, mm, where its long edges have equal parts.
+
+    Returns:
+        The panels, and notes.
+
+    Raises:
+        ReferenceFileError: the surface is no strip, has no lip that could be meant, or cannot be cut.
+    """
+    band, notes = lip_band(surface, width, source, tolerance)
+    return cut_lengths(band, count, source, tolerance), notes
+
+
+def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> tuple[CutPanel, ...]:
     """Cut a strip where the mean length of its two long edges has equal parts.
 
     Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean,
@@ -24,15 +39,12 @@ def cut_lengths(surface: Surface, count: int, lip: float | None, source: str, to
     Args:
         surface: what to cut.
         count: number of panels.
-        lip: width of the band about the strip's lip that the panels cover, mm; None for all of the strip.
         source: the reference's name.
         tolerance: how far faces that meet may lie apart, mm.
 
     Raises:
-        ReferenceFileError: the surface is no strip, has no lip where one is asked for, or cannot be cut.
+        ReferenceFileError: the surface is no strip, or cannot be cut.
     """
-    if lip is not None:
-        surface = lip_band(surface, lip, source, tolerance)
     lanes = find_lanes(surface)
     parts = np.linspace(0.0, 1.0, count + 1)
     if lanes is None or not lanes.outer:

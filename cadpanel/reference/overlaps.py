@@ -16,8 +16,10 @@ from cadpanel.reference.sheet import Sheet
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-# So many points of a panel's outline, of 64 a side, lie on a panel that it covers: fewer may be a corner's overrun.
+# So many points of a panel's outline, of 64 a side, lie on a panel that it covers, or one of them by so many tolerances
+# inside: less may be a corner's overrun.
 COVERING = 3
+DEEP = 10.0
 # What lies on a panel has its normal there, or leans against it by no more than this, degrees: a fin stands on it.
 ALIGNED = 20.0
 # An overlap of no more than so many tolerances may be how the file was drawn, and a larger tolerance may help.
@@ -62,12 +64,12 @@ def refuse_overlaps(sheets: Sequence[Sheet], source: str, tolerance: float) -> N
     tree = cKDTree(points)
     for index, (one, loop) in enumerate(zip(sheets, loops, strict=True)):
         near = _beside(index, one, loop, tree, owner, tolerance)
-        if len(near) < COVERING:
+        if not len(near):
             continue
         depths = _depths(one, loop, points[near], normals[near], tolerance)
         for other in np.unique(owner[near]).tolist():
             own = depths[owner[near] == other]
-            if np.count_nonzero(own > tolerance) >= COVERING:
+            if np.count_nonzero(own > tolerance) >= COVERING or own.max() > DEEP * tolerance:
                 raise PanelError(sheets[other].name, _said(one.name, source, float(own.max()), tolerance))
 
 

@@ -108,6 +108,13 @@ def test_a_narrow_overlap_is_within_the_tolerance_that_the_refusal_names():
     assert len(assemble(panels, "roof.step", 2.1).seams) == 1
 
 
+@pytest.mark.parametrize("at", [0.0, 100.0, 150.0, 200.0])
+def test_long_bars_that_cross_are_refused_though_few_points_of_their_outlines_meet(at):
+    bars = tile("A", 0.0, 0.0, 20_000.0, 400.0), tile("B", 9000.0 + at, -9000.0 - at, 400.0, 20_000.0)
+    with pytest.raises(PanelError, match=r"covers panel '(A|B)' to within 1 mm"):
+        check(*bars)
+
+
 @pytest.mark.parametrize(("height", "refused"), [(0.0, True), (0.9, True), (1.1, False), (50.0, False)])
 def test_panels_above_each_other_are_told_apart_by_the_tolerance(height, refused):
     panels = tile("A", 0.0, 0.0), tile("B", 100.0, 200.0, 300.0, 400.0, height)

@@ -107,16 +107,23 @@ def angle(chamfer, noise):
     return np.column_stack([flat, np.zeros(len(flat))])
 
 
-@pytest.mark.parametrize(("chamfer", "noise"), [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0)])
+@pytest.mark.parametrize(("chamfer", "noise"), [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0), (0.7, 0.0), (0.3, 0.005)])
 def test_fine_polyline_keeps_its_corner(tmp_path, chamfer, noise):
     edge = polyline_edge(list(angle(chamfer, noise)))
     panels = reference(tmp_path, edge).panels
     assert sorted(len(panel.edges) for panel in panels) == [4, 6]
     assert (
-        np.linalg.norm(cut_points(raw(tmp_path, plate(), [edge]).panels) - (3000.0, 1000.0, 0.0), axis=1).min() <= 0.5
+        np.linalg.norm(cut_points(raw(tmp_path, plate(), [edge]).panels) - (3000.0, 1000.0, 0.0), axis=1).min() <= 0.75
     )
     small = 3000.0 * 1000.0
     assert areas(cut([plate()], [edge])) == pytest.approx([small, LENGTH * WIDTH - small], abs=10.0)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-5, 1e-3, 0.05, 0.5])
+def test_corner_of_long_segments_may_be_drawn_twice(tmp_path, apart):
+    corners = [(3000, 0, 0), (3000, 1000 - apart, 0), (3000 + apart, 1000, 0), (LENGTH, 1000, 0)]
+    panels = reference(tmp_path, polyline_edge(list(np.array(corners, dtype=float)))).panels
+    assert sorted(len(panel.edges) for panel in panels) == [4, 6]
 
 
 def test_how_far_a_smooth_curve_passes_beside_its_segments_is_said(tmp_path):

@@ -65,11 +65,12 @@ def corners(points: Array, turns: NDArray[np.intp]) -> NDArray[np.bool_]:
     )
     cosines = np.sum(unit(here - before) * unit(after - here), axis=1)
     found = np.zeros(len(turns), dtype=np.bool_)
-    # Beside a corner the curve turns, too, when looked at so roughly: the sharpest turn stands for its neighbours.
+    # Beside a corner, to as far as it may be chamfered and beyond, the curve turns, too, when looked at so roughly: the
+    # sharpest turn stands for its neighbours.
     for place in np.argsort(cosines, kind="stable").tolist():
         if cosines[place] > np.cos(np.radians(CORNER_ANGLE)):
             break
-        first, last = np.searchsorted(at, [at[place] - CORNER_LENGTH, at[place] + CORNER_LENGTH])
+        first, last = np.searchsorted(at, [at[place] - 2.0 * CORNER_LENGTH, at[place] + 2.0 * CORNER_LENGTH])
         found[place] = not found[first:last].any()
     return found
 

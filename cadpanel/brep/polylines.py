@@ -14,7 +14,7 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.Geom import Geom_BSplineCurve
-from OCP.GeomAbs import GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_BezierCurve, GeomAbs_BSplineCurve, GeomAbs_Line
 from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
@@ -74,7 +74,11 @@ def _segment(edge: TopoDS_Edge) -> tuple[Array, Array] | None:
     if BRep_Tool.Degenerated_s(edge):
         return None
     curve = BRepAdaptor_Curve(edge)
-    if curve.GetType() != GeomAbs_Line:
+    straight = curve.GetType() == GeomAbs_Line
+    if curve.GetType() in (GeomAbs_BSplineCurve, GeomAbs_BezierCurve):
+        # So the kernel reads the segments of an IGES polyline.
+        straight = curve.NbPoles() == 2
+    if not straight:
         return None
     first, last = (np.array(curve.Value(at).Coord()) for at in (curve.FirstParameter(), curve.LastParameter()))
     return (first, last) if np.linalg.norm(last - first) > MEET else None

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.TopAbs import TopAbs_OUT
 from OCP.TopoDS import TopoDS_Edge
+from scipy.spatial import cKDTree
 
 from cadpanel.brep import kernel
 from cadpanel.brep.clean import SkinFace
@@ -21,6 +22,7 @@ from cadpanel.brep.patch import Patch
 from cadpanel.brep.runs import runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.polyline import unit
 
 Array = NDArray[np.float64]
 
@@ -29,6 +31,8 @@ NEAR_PART = 0.01
 NEAR = 10.0
 # A curve lies nearer to another face mostly where that holds for more than this part of its points.
 MOSTLY = 0.5
+# A curve goes on from another one where it turns by less than an angle with this cosine.
+ONWARD = 0.94
 # Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
 INSIDE = 1e-9
 
@@ -85,9 +89,27 @@ def land_curves(
     Raises:
         ReferenceFileError: a curve cannot be followed on a face.
     """
-    pieces = [(index, piece) for index, curve in enumerate(curves) for piece in curve.pieces]
+    pieces = _continued([(index, piece) for index, curve in enumerate(curves) for piece in curve.pieces])
     reaches = [max(NEAR, NEAR_PART * surface.size) for surface in surfaces]
     return _landings(surfaces, reaches, pieces, [f"{curve.called} of '{curve_source}'" for curve in curves], tolerance)
+
+
+def _continued(pieces: list[tuple[int, Piece]]) -> list[tuple[int, Piece]]:
+    """The same, with no own ends where one other curve goes on: there the curve does not stop short of a border."""
+    sides = [(place, side) for place, (_, piece) in enumerate(pieces) for side in (0, 1) if piece.own_ends[side]]
+    if not sides:
+        return pieces
+    lines = [pieces[place][1].points[:: -1 if side else 1] for place, side in sides]
+    ends, ways = np.array([line[0] for line in lines]), unit(np.array([line[0] - line[1] for line in lines]))
+    found = list(pieces)
+    for number, near in enumerate(cKDTree(ends).query_ball_point(ends, CLOSE)):
+        others = [other for other in near if other != number]
+        if len(others) == 1 and ways[number] @ ways[others[0]] < -ONWARD:
+            place, side = sides[number]
+            index, piece = found[place]
+            own = piece.own_ends
+            found[place] = index, replace(piece, own_ends=(own[0] and side != 0, own[1] and side != 1))
+    return found
 
 
 def _landings(

@@ -137,11 +137,11 @@ def _turns(curve: BRepAdaptor_Curve, breaks: Array, knots: Array) -> tuple[Array
     steps = BESIDE * np.diff(breaks)
     before, after = (unit(_ways(curve, at)) for at in (breaks[1:-1] - steps[:-1], breaks[1:-1] + steps[1:]))
     off = missed(before, after, norm(np.diff(_values(curve, breaks), axis=0)))
-    sharp = np.concatenate([[True], off > SHARP, [True]])
-    facets = sharp & np.concatenate([[False], off <= FACET, [False]])
-    places = np.searchsorted(knots, breaks[facets])
-    facets[facets] = ~corners(_values(curve, knots), places)
-    return breaks[sharp & ~facets], breaks[facets]
+    # A corner may be drawn in several turns, a hair apart, each of which is too small to tell.
+    found = corners(_values(curve, knots), np.searchsorted(knots, breaks[1:-1]))
+    ends = np.concatenate([[True], found | (off > FACET), [True]])
+    facets = np.concatenate([[False], off > SHARP, [False]]) & ~ends
+    return breaks[ends], breaks[facets]
 
 
 def _smoothed(curve: BRepAdaptor_Curve, breaks: Array, knots: Array, ends: tuple[float, float]) -> SmoothCurve | None:

@@ -10,14 +10,14 @@ from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.curves import sampled
-from cadpanel.brep.model import Label, ModelCurve, shapes_of
+from cadpanel.brep.model import Label, ModelCurve, compound_of, shapes_of
 from cadpanel.brep.polylines import polyline_edge
-from cadpanel.brep.read import read_reference
+from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.smooth import CLOSE
 from cadpanel.reference.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_drawn_curves import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw
-from tests.model_files import write_shape
+from tests.model_files import STRIP, strip_faces, write_labelled, write_shape
 
 
 def sine(count, periods, noise=0.0):
@@ -73,6 +73,18 @@ def test_fine_polyline_makes_the_panels_of_the_curve_that_it_samples(tmp_path, d
     assert areas(cut([plate()], edges_of(shape))) == pytest.approx([half, half], abs=allowed * WIDTH)
 
 
+@pytest.mark.parametrize("ending", ["step", "iges"])
+@pytest.mark.parametrize("drawn", [lambda points: polyline_edge(list(points)), wire], ids=["spline", "segments"])
+def test_fine_polyline_over_three_faces_cuts_alike_from_every_format(tmp_path, drawn, ending):
+    # (The kernel parts a spline of degree 1 from an IGES file into splines of two poles.)
+    u = np.linspace(0.0, 3.0, 1001)
+    points = STRIP(u, 0.5 + 0.05 * np.sin(2.0 * u))
+    lines = write_labelled(tmp_path / f"lines.{ending}", [(Label(name="cut"), drawn(points), [])])
+    skin = write_shape(tmp_path / "skin.brep", compound_of(strip_faces()))
+    panels = read_raw_panels(skin, ReferenceSettings(unit="mm", network=lines)).panels
+    assert [len(panel.faces) for panel in panels] == [3, 3]
+
+
 @pytest.mark.parametrize("noise", [0.001, 0.01])
 def test_noise_of_a_digitised_curve_is_smoothed_away(tmp_path, noise):
     edge = polyline_edge(list(sine(4000, 1, noise)))
@@ -107,16 +119,23 @@ def angle(chamfer, noise):
     return np.column_stack([flat, np.zeros(len(flat))])
 
 
-@pytest.mark.parametrize(("chamfer", "noise"), [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0)])
+@pytest.mark.parametrize(("chamfer", "noise"), [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0), (0.7, 0.0), (0.3, 0.005)])
 def test_fine_polyline_keeps_its_corner(tmp_path, chamfer, noise):
     edge = polyline_edge(list(angle(chamfer, noise)))
     panels = reference(tmp_path, edge).panels
     assert sorted(len(panel.edges) for panel in panels) == [4, 6]
     assert (
-        np.linalg.norm(cut_points(raw(tmp_path, plate(), [edge]).panels) - (3000.0, 1000.0, 0.0), axis=1).min() <= 0.5
+        np.linalg.norm(cut_points(raw(tmp_path, plate(), [edge]).panels) - (3000.0, 1000.0, 0.0), axis=1).min() <= 0.75
     )
     small = 3000.0 * 1000.0
     assert areas(cut([plate()], [edge])) == pytest.approx([small, LENGTH * WIDTH - small], abs=10.0)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-5, 1e-3, 0.05, 0.5])
+def test_corner_of_long_segments_may_be_drawn_twice(tmp_path, apart):
+    corners = [(3000, 0, 0), (3000, 1000 - apart, 0), (3000 + apart, 1000, 0), (LENGTH, 1000, 0)]
+    panels = reference(tmp_path, polyline_edge(list(np.array(corners, dtype=float)))).panels
+    assert sorted(len(panel.edges) for panel in panels) == [4, 6]
 
 
 def test_how_far_a_smooth_curve_passes_beside_its_segments_is_said(tmp_path):

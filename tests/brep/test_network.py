@@ -140,6 +140,15 @@ def test_curve_that_ends_at_another_one_is_fine(folder):
     assert_covers(found.panels, [face])
 
 
+@pytest.mark.parametrize("meet", [0.999, 0.9997, 1.0, 1.0003, 1.001])
+def test_curves_that_go_on_from_each_other_beside_a_border_leave_no_sliver(folder, meet):
+    faces = strip_faces()
+    parts = [np.linspace(0.0, meet, POINTS), np.linspace(meet, 3.0, POINTS)]
+    found = raw(folder, faces, [curve(STRIP(u, 0.5 + 0.1 * np.sin(2.0 * u))) for u in parts])
+    assert [panel.name for panel in found.panels] == ["S1-01", "S1-02"]
+    assert_covers(found.panels, faces)
+
+
 def test_curve_far_from_the_surface_and_file_without_curves_are_refused(folder):
     face = kernel_face(STRIP, poles=40)
     with pytest.raises(ReferenceFileError, match=r"Curve 1 of 'lines.brep' lies over no surface of 'skin.brep'"):

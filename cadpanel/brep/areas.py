@@ -1,4 +1,4 @@
-"""Areas of trimmed faces, however their borders wave.
+"""Areas of trimmed faces, on the surface and in its parameter plane, however their borders wave.
 
 The kernel's own integration passes over waves: it was off by a seventh beside ten of them, and where it is asked for
 precision still by some 1e-4, without a word.
@@ -61,6 +61,12 @@ def trimmed_areas(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, chosen: 
         strips = halves * (norm(cross(along_u, along_v)) @ weights)
         areas += np.bincount(owners, strips * steps, minlength=len(areas))
     return np.abs(areas)
+
+
+def enclosed(face: TopoDS_Face) -> float:
+    """What a face's borders enclose in its parameter plane; negative where it is reversed against its surface."""
+    ends, steps = _border(face)
+    return float((ends[:, 0] - ends[:, 0].mean()) @ steps) if len(ends) else 0.0
 
 
 @cache

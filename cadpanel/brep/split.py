@@ -8,35 +8,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
+from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepGProp import BRepGProp
-from OCP.BRepTools import BRepTools
 from OCP.GCPnts import GCPnts_AbscissaPoint
-from OCP.GeomAbs import GeomAbs_CN
-from OCP.gp import gp_Pnt2d, gp_Vec2d
 from OCP.GProp import GProp_GProps
 from OCP.Standard import Standard_Failure
-from OCP.TColStd import TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED
+from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_ListOfShape
 
+from cadpanel.brep.areas import enclosed
 from cadpanel.brep.model import shapes_of
 from cadpanel.errors import ReferenceFileError
-
-Array = NDArray[np.float64]
 
 FUZZY = 1e-3
 """How far a cut may end from the boundary that it should reach, mm."""
 LOST_AREA = 1e-6
 """Part of the area by which the pieces may differ from what was split."""
-
-# Gauss points in each span of a border.
-GAUSS_PLACES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 INTEGRATED = 1e-8
 """Relative error to which areas are integrated."""
@@ -109,30 +99,8 @@ def area_of(shape: TopoDS_Shape) -> float:
 
 def _lost(face: TopoDS_Face, parts: Sequence[TopoDS_Face]) -> bool:
     """Whether parts enclose less or more than a face, by what borders enclose in the parameter plane."""
-    whole, summed = _enclosed(face), sum(map(_enclosed, parts))
+    whole, summed = enclosed(face), sum(map(enclosed, parts))
     return abs(whole - summed) > LOST_AREA * abs(whole)
-
-
-def _enclosed(face: TopoDS_Face) -> float:
-    """What a face's borders enclose in its parameter plane, by Green's theorem; negative where it is reversed."""
-    total = 0.0
-    origin = np.array(BRepTools.UVBounds_s(face)).reshape(2, 2).mean(axis=1)
-    for shape in shapes_of(face, TopAbs_EDGE):
-        edge = TopoDS.Edge_s(shape)
-        curve = BRepAdaptor_Curve2d(edge, face)
-        ends = TColStd_Array1OfReal(1, curve.NbIntervals(GeomAbs_CN) + 1)
-        curve.Intervals(ends, GeomAbs_CN)
-        firsts = np.array([ends.Value(place) for place in range(1, ends.Length() + 1)])
-        halves = 0.5 * np.diff(firsts)
-        places = firsts[:-1, None] + halves[:, None] * (1.0 + GAUSS_PLACES)
-        point, way = gp_Pnt2d(), gp_Vec2d()
-        turned = []
-        for place in places.ravel().tolist():
-            curve.D1(place, point, way)
-            turned.append((point.X() - origin[0]) * way.Y() - (point.Y() - origin[1]) * way.X())
-        side = -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0
-        total += side * 0.5 * float(halves @ (np.reshape(turned, places.shape) @ GAUSS_WEIGHTS))
-    return total
 
 
 def _unsure_area(face: TopoDS_Face) -> float:

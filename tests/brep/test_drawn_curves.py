@@ -11,6 +11,7 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep import lay
+from cadpanel.brep.areas import enclosed
 from cadpanel.brep.clean import skin_faces
 from cadpanel.brep.connect import surfaces_of
 from cadpanel.brep.curves import sampled
@@ -19,7 +20,7 @@ from cadpanel.brep.project import land_curves
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.select import select_faces
 from cadpanel.brep.smooth import CLOSE
-from cadpanel.brep.split import _enclosed, area_of
+from cadpanel.brep.split import area_of
 from cadpanel.brep.subdivide.network import cut_network
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.polyline import distances_to_polylines
@@ -89,7 +90,7 @@ def cut(faces, curves):
 
 def areas(panels):
     """What the panels enclose; the plate's parameters are millimetres."""
-    return sorted(sum(abs(_enclosed(face)) for face in panel.faces) for panel in panels)
+    return sorted(sum(abs(enclosed(face)) for face in panel.faces) for panel in panels)
 
 
 def raw(tmp_path, shape, curves, **how):

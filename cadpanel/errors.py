@@ -29,6 +29,10 @@ class PanelError(CadpanelError, ValueError):
         self.panel = panel
         self.reason = reason
 
+    def __reduce__(self) -> tuple[type[PanelError], tuple[str, ...]]:
+        """Made of these, and not of the sentence, when it comes from another interpreter."""
+        return type(self), (self.panel, self.reason)
+
 
 class OutlineError(PanelError):
     """The faces of a panel do not have the outline of one: one loop with three corners or more.
@@ -41,6 +45,10 @@ class OutlineError(PanelError):
         super().__init__(panel, f"in '{source}', {fault}: {remedy}.")
         self.source = source
         self.fault = fault
+        self.remedy = remedy
+
+    def __reduce__(self) -> tuple[type[PanelError], tuple[str, ...]]:
+        return type(self), (self.panel, self.source, self.fault, self.remedy)
 
     def with_remedy(self, remedy: str) -> OutlineError:
         """The same fault with what to do about it where the panel came about in another way."""

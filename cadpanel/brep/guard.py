@@ -1,9 +1,10 @@
 """A second interpreter that reads files, so that a crash or an endless loop of the CAD kernel takes nothing with it.
 
 The kernel crashes over some damaged files whatever is looked for in their text before: of 1500 STEP files with a
-reference, a number, a line or a bit changed, two ended the process. So every file is read there. The interpreter starts
-once (about 2 s, beside the kernel's start in this one) and reads one file after the other; one that dies is replaced at
-the next file. What it read comes back in the kernel's binary form, in a small part of the time that reading takes.
+reference, a number, a line or a bit changed, two ended the process; and of damaged .brep files that were read, one in
+25 crashes it, or keeps it busy for ever, when a curve is laid over its faces. So every file is read, cut and measured
+there. The interpreter starts once (about 2 s, beside the kernel's start in this one) and takes one file after the
+other; one that dies is replaced at the next file. Shapes come back in the kernel's binary form, panels as arrays.
 
 Nothing of the kernel is imported here, so that a command can start the reader before it loads the kernel itself.
 """
@@ -20,19 +21,48 @@ import sys
 import tempfile
 import threading
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Literal
 
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
 
 Task = Literal["products", "model"]
+Work = Literal["panels", "survey"]
+Kind = Literal["read", "hold", "work"]
+Reading = Callable[[Task, Path, float | None], object]
 
 SECONDS_TO_READ = 120.0
 """Time allowed for any file, the start of the interpreter included."""
 SECONDS_PER_MEGABYTE = 10.0
 """More time for larger files; what is whole takes 0.2 s."""
+SECONDS_TO_WORK = 3600.0
+"""Time allowed for cutting and measuring what was read; ten thousand panels take two minutes."""
+DAMAGED = "it is damaged or far too large; export it again, with fewer faces"
+WORKED_ON = "repair it where it was modelled, cut it into fewer panels, or cut it another way"
 HEADER = struct.Struct("<Q")
 CHUNK_BYTES = 1 << 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What the second interpreter is to do.
+
+    Attributes:
+        kind: read a file, hold it for the work that comes next, or work on it.
+        task: what to make of it.
+        folder: in which names of files are looked for.
+        path: the file, as the user named it.
+        argument: how many millimetres its unit has, where it is read; the settings, where it is worked on.
+    """
+
+    kind: Kind
+    task: Task | Work
+    folder: Path
+    path: Path
+    argument: object
 
 
 class _Reader:
@@ -57,8 +87,14 @@ class _Reader:
             )
         return self._process
 
-    def ask(self, request: tuple[object, ...], name: str, seconds: float) -> object:
+    def ask(self, request: Request, name: str, seconds: float, remedy: str = DAMAGED) -> object:
         """Hand over one request and return the answer.
+
+        Args:
+            request: what to do.
+            name: the file's, for messages.
+            seconds: time allowed.
+            remedy: what to do about a file over which the interpreter does not end.
 
         Raises:
             ReferenceFileError: the interpreter died over it, or did not answer in time.
@@ -71,8 +107,7 @@ class _Reader:
                 return pickle.loads(_answer(process, time.monotonic() + seconds))
             except TimeoutError:
                 raise ReferenceFileError(
-                    f"'{name}' keeps the CAD kernel busy for more than {seconds:.0f} s: it is damaged or "
-                    "far too large; export it again, with fewer faces."
+                    f"'{name}' keeps the CAD kernel busy for more than {seconds:.0f} s: {remedy}."
                 ) from None
             except (EOFError, OSError):
                 raise ReferenceFileError(
@@ -124,6 +159,57 @@ def stop_reader() -> None:
     _READER.stop()
 
 
+_HERE: Reading | None = None
+"""How the second interpreter itself reads a file; None in the first."""
+
+
+def read_here(reading: Reading) -> None:
+    """From now on, read files in this interpreter: it is the second one."""
+    global _HERE
+    _HERE = reading
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """A file that is read, and kept, before the work on it begins: `millimetres` as in `read_guarded`."""
+
+    task: Task
+    path: Path
+    millimetres: float | None = None
+
+
+def work_guarded(work: Work, path: Path, settings: ReferenceSettings, held: Held) -> object:
+    """Have a file worked on by the second interpreter.
+
+    Args:
+        work: what to do with it.
+        path: the file.
+        settings: how.
+        held: how it is read, for which there is less time than for the work.
+
+    Returns:
+        What the work gives.
+
+    Raises:
+        CadpanelError: the file, or what is to be done, is refused, or the kernel crashes over it or does not end.
+    """
+    _ask("hold", held.task, held.path, held.millimetres, _seconds_to_read(held.path))
+    return _ask("work", work, path, settings, SECONDS_TO_WORK, WORKED_ON)
+
+
+def _ask(kind: Kind, task: Task | Work, path: Path, argument: object, seconds: float, remedy: str = DAMAGED) -> object:
+    # This interpreter may stand in another folder by now than where that one was started.
+    request = Request(kind=kind, task=task, folder=Path.cwd(), path=path, argument=argument)
+    answer = _READER.ask(request, path.name, seconds, remedy)
+    if isinstance(answer, Exception):
+        raise answer
+    return answer
+
+
+def _seconds_to_read(path: Path) -> float:
+    return SECONDS_TO_READ + SECONDS_PER_MEGABYTE * path.stat().st_size / 1e6
+
+
 def read_guarded(task: Task, path: Path, millimetres: float | None, seconds: float | None = None) -> object:
     """Read a file in the second interpreter.
 
@@ -139,12 +225,9 @@ def read_guarded(task: Task, path: Path, millimetres: float | None, seconds: flo
     Raises:
         ReferenceFileError: the file is refused, or the kernel crashes over it or does not end.
     """
-    if seconds is None:
-        seconds = SECONDS_TO_READ + SECONDS_PER_MEGABYTE * path.stat().st_size / 1e6
-    answer = _READER.ask((task, os.fspath(path.absolute()), millimetres), path.name, seconds)
-    if isinstance(answer, ReferenceFileError):
-        raise answer
-    return answer
+    if _HERE is not None:
+        return _HERE(task, path, millimetres)
+    return _ask("read", task, path, millimetres, _seconds_to_read(path) if seconds is None else seconds)
 
 
 def _framed(data: bytes) -> bytes:

@@ -1,24 +1,26 @@
-"""What the guarded interpreter does: read files that another one names, and hand over what they hold."""
+"""What the guarded interpreter does: read, cut and measure files that another one names."""
 
 from __future__ import annotations
 
 import os
 import pickle
 import sys
+import traceback
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.formats.catalogue import format_of
 from cadpanel.brep.formats.step import STEP
-from cadpanel.brep.guard import HEADER, Task
+from cadpanel.brep.guard import HEADER, WORKED_ON, Request, Task, Work, read_here
 from cadpanel.brep.model import Model, children, compound_of, packed, shapes_of, unpacked
 from cadpanel.brep.products import NamedShape, read_products
 from cadpanel.brep.sampling import sample_faces
-from cadpanel.errors import ReferenceFileError
+from cadpanel.errors import CadpanelError, ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,16 +86,70 @@ def _try_out(model: Model) -> None:
                 ) from error
 
 
+WORDS: dict[Work, str] = {"panels": "cutting", "survey": "measuring"}
+
+# Files that were read to be worked on next.
+_held: dict[tuple[Task, Path, float | None], PackedModel | PackedProducts] = {}
+
+
+def held_or_read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:
+    """What was read before, else what is read now.
+
+    Raises:
+        ReferenceFileError: the kernel cannot read it.
+    """
+    held = _held.get((task, path, millimetres))
+    return read(task, path, millimetres) if held is None else held
+
+
+def answer(request: Request) -> object:
+    """Do what is asked.
+
+    Raises:
+        CadpanelError: the file, or what is asked, is refused.
+    """
+    os.chdir(request.folder)
+    if request.kind == "work":
+        try:
+            return _work(cast(Work, request.task), request.path, cast(ReferenceSettings, request.argument))
+        finally:
+            _held.clear()
+    task, millimetres = cast(Task, request.task), cast("float | None", request.argument)
+    found = read(task, request.path, millimetres)
+    if request.kind == "read":
+        return found
+    _held.clear()
+    _held[task, request.path, millimetres] = found
+    return None
+
+
+def _work(work: Work, path: Path, settings: ReferenceSettings) -> object:
+    # Here, as both modules read files themselves.
+    from cadpanel.brep.panels import raw_panels
+    from cadpanel.brep.survey import measured
+
+    try:
+        return raw_panels(path, settings) if work == "panels" else measured(path, settings)
+    except CadpanelError:
+        raise
+    except Exception as error:
+        # Of the kernel, or over arrays that a damaged file fills with nonsense. Python shows the note, a command not.
+        what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {WORDS[work]} fail"
+        refusal = ReferenceFileError(f"'{path.name}' makes {what} ({str(error) or type(error).__name__}): {WORKED_ON}.")
+        refusal.add_note(traceback.format_exc())
+        raise refusal from error
+
+
 def serve(requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer one request after the other until none comes."""
+    read_here(held_or_read)
     while header := requests.read(HEADER.size):
-        task, path, millimetres = pickle.loads(requests.read(HEADER.unpack(header)[0]))
-        answer: object
+        found: object
         try:
-            answer = read(task, Path(path), millimetres)
-        except ReferenceFileError as error:
-            answer = error
-        data = pickle.dumps(answer)
+            found = answer(pickle.loads(requests.read(HEADER.unpack(header)[0])))
+        except CadpanelError as error:
+            found = error
+        data = pickle.dumps(found)
         answers.write(HEADER.pack(len(data)) + data)
         answers.flush()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from OCP.GeomAbs import (
@@ -23,6 +24,8 @@ from cadpanel.brep.clean import SkinFace, skin_faces
 from cadpanel.brep.connect import Surface, surfaces_of
 from cadpanel.brep.curvature import Curvature, curvature_of
 from cadpanel.brep.curves import sampled
+from cadpanel.brep.formats.catalogue import checked_format_of
+from cadpanel.brep.guard import Held, work_guarded
 from cadpanel.brep.lips import SECTIONS, Lip, lips_of
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Label, Model
@@ -140,8 +143,14 @@ def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Surve
         ReferenceFileError: the file cannot be read, or holds neither faces nor curves.
         SettingsError: the path is no name of a file.
     """
-    how = settings or ReferenceSettings()
-    model = load_model(file_named(path, "reference"), how.millimetres)
+    path, how = file_named(path, "reference"), settings or ReferenceSettings()
+    checked_format_of(path)
+    return cast(Survey, work_guarded("survey", path, how, Held("model", path, how.millimetres)))
+
+
+def measured(path: Path, how: ReferenceSettings) -> Survey:
+    """The same in this interpreter, which the kernel may crash over a damaged file."""
+    model = load_model(path, how.millimetres)
     skin, mended = _skin(model, how)
     surfaces, gaps = surfaces_of(skin, model.source, how.seam_tolerance, SMOOTH) if skin else ((), ())
     curves = sampled(model.curves(), model.source, np.zeros(3))

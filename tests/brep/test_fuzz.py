@@ -18,6 +18,7 @@ from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.subdivide.mesh import load_mesh
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.brep.test_network import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
 
@@ -114,21 +115,36 @@ def test_file_of_another_kind_under_the_ending_is_refused(tmp_path, ending):
         load_model(path)
 
 
-def test_damaged_faces_are_cut_or_refused(originals, tmp_path, monkeypatch):
+@pytest.fixture(scope="module")
+def lines(folder):
+    """Two curves across the strip."""
+    u = np.linspace(0.0, 3.0, 60)
+    return write_shape(folder / "lines.brep", compound_of(curve(Lip()(u, np.full(60, v))) for v in (0.3, 0.6)))
+
+
+# Over what seeds 7 and 22 leave, the kernel crashes when a curve is laid over a face.
+@pytest.mark.parametrize(
+    ("seeds", "ways"),
+    [(range(NUMBER, NUMBER + 6 * 30, 6), ("divide", "grid")), ((7, 10, 16, 22, 28), ("network",))],
+    ids=["alone", "curves"],
+)
+def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatch, seeds, ways):
     """What was read may still be nothing that can be cut: bent, empty or far away."""
     monkeypatch.setattr(guard, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(guard, "SECONDS_TO_WORK", SECONDS)
     path = tmp_path / "text.brep"
+    settings = {"divide": 3, "grid": (2, 2), "network": lines}
     sentences = []
-    for seed in range(NUMBER, NUMBER + 6 * 30, 6):
+    for seed in seeds:
         path.write_bytes(damaged(originals["text.brep"], seed))
-        for how in ({"divide": 3}, {"grid": (2, 2)}):
+        for how in ({way: settings[way]} for way in ways):
             try:
                 panels = read_raw_panels(path, ReferenceSettings(unit="mm", **how)).panels
                 assert panels
             except CadpanelError as error:
                 sentences.append(str(error))
     assert sentences
-    assert [said for said in sentences if "text.brep" not in said] == []
+    assert [said for said in sentences if "text.brep" not in said and "lines.brep" not in said] == []
 
 
 def test_damaged_mesh_is_read_or_refused(tmp_path):

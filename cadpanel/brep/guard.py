@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Literal
 
+from cadpanel.brep.interpreter import interpreter
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -56,6 +57,8 @@ class Request:
         folder: in which names of files are looked for.
         path: the file, as the user named it.
         argument: how many millimetres its unit has, where it is read; the settings, where it is worked on.
+        seconds: time allowed. It ends itself when a processor has been busy for so long: nobody else would end it, once
+            the interpreter that asked has been killed.
     """
 
     kind: Kind
@@ -63,6 +66,7 @@ class Request:
     folder: Path
     path: Path
     argument: object
+    seconds: float
 
 
 class _Reader:
@@ -77,9 +81,8 @@ class _Reader:
         """Return the running interpreter, a new one if there is none."""
         if self._process is None or self._process.poll() is not None:
             self._said = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the interpreter runs
-            # A plain interpreter, not multiprocessing: that would run the caller's own script again to get started.
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "cadpanel.brep.reading"],
+                interpreter("cadpanel.brep.reading"),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._said,
@@ -87,13 +90,12 @@ class _Reader:
             )
         return self._process
 
-    def ask(self, request: Request, name: str, seconds: float, remedy: str = DAMAGED) -> object:
+    def ask(self, request: Request, name: str, remedy: str = DAMAGED) -> object:
         """Hand over one request and return the answer.
 
         Args:
             request: what to do.
             name: the file's, for messages.
-            seconds: time allowed.
             remedy: what to do about a file over which the interpreter does not end.
 
         Raises:
@@ -104,10 +106,10 @@ class _Reader:
             assert process.stdin is not None
             try:
                 process.stdin.write(_framed(pickle.dumps(request)))
-                return pickle.loads(_answer(process, time.monotonic() + seconds))
+                return pickle.loads(_answer(process, time.monotonic() + request.seconds))
             except TimeoutError:
                 raise ReferenceFileError(
-                    f"'{name}' keeps the CAD kernel busy for more than {seconds:.0f} s: {remedy}."
+                    f"'{name}' keeps the CAD kernel busy for more than {request.seconds:.0f} s: {remedy}."
                 ) from None
             except (EOFError, OSError):
                 raise ReferenceFileError(
@@ -199,8 +201,8 @@ def work_guarded(work: Work, path: Path, settings: ReferenceSettings, held: Held
 
 def _ask(kind: Kind, task: Task | Work, path: Path, argument: object, seconds: float, remedy: str = DAMAGED) -> object:
     # This interpreter may stand in another folder by now than where that one was started.
-    request = Request(kind=kind, task=task, folder=Path.cwd(), path=path, argument=argument)
-    answer = _READER.ask(request, path.name, seconds, remedy)
+    request = Request(kind=kind, task=task, folder=Path.cwd(), path=path, argument=argument, seconds=seconds)
+    answer = _READER.ask(request, path.name, remedy)
     if isinstance(answer, Exception):
         raise answer
     return answer

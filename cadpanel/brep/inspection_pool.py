@@ -22,6 +22,7 @@ from typing import BinaryIO
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.inspection import ShapeFacts, inspect
+from cadpanel.brep.interpreter import interpreter
 from cadpanel.brep.model import packed, unpacked
 from cadpanel.brep.step import step_shapes
 from cadpanel.errors import DeliveryError
@@ -87,8 +88,7 @@ def second_interpreter(panels: int) -> Iterator[Helper | None]:
     if (os.cpu_count() or 1) < 2 or panels < WORTHWHILE_PANELS:
         yield None
         return
-    # A plain second interpreter, not multiprocessing: that would run the caller's own script again to get started.
-    command = [sys.executable, "-m", "cadpanel.brep.inspection_pool"]
+    command = interpreter(__name__)
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, bufsize=PIPE_BYTES) as process:
         try:
@@ -204,7 +204,8 @@ def _serve(requests: BinaryIO, answers: BinaryIO) -> None:
         return
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Answer what comes on the standard input."""
     # Answers go through a channel of their own, as the kernel may print to standard output.
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "wb", buffering=PIPE_BYTES)
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pickle
+import resource
 import sys
 import traceback
 from dataclasses import dataclass, replace
@@ -109,6 +111,7 @@ def answer(request: Request) -> object:
         CadpanelError: the file, or what is asked, is refused.
     """
     os.chdir(request.folder)
+    _limit(request.seconds)
     if request.kind == "work":
         try:
             return _work(cast(Work, request.task), request.path, cast(ReferenceSettings, request.argument))
@@ -121,6 +124,15 @@ def answer(request: Request) -> object:
     _held.clear()
     _held[task, request.path, millimetres] = found
     return None
+
+
+def _limit(seconds: float) -> None:
+    """Let the system end this interpreter once all processors have been busy for so long."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    soft = used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    if hard == resource.RLIM_INFINITY or soft < hard:
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(soft), hard))
 
 
 def _work(work: Work, path: Path, settings: ReferenceSettings) -> object:
@@ -154,11 +166,9 @@ def serve(requests: BinaryIO, answers: BinaryIO) -> None:
         answers.flush()
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Answer what comes on the standard input."""
     # Answers go through a channel of their own, as the kernel prints to standard output.
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    # The classes of the answers must bear the name under which the other interpreter knows them.
-    from cadpanel.brep.reading import serve as serve_under_its_name
-
-    serve_under_its_name(sys.stdin.buffer, channel)
+    serve(sys.stdin.buffer, channel)

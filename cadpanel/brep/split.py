@@ -85,7 +85,10 @@ def require_whole(face: TopoDS_Face, parts: Sequence[TopoDS_Face], what: str) ->
     if not _lost(face, parts):
         return
     # A border that was joined with another one within the tolerance may lie elsewhere in the parameter plane.
-    whole, summed = area_of(face), sum(map(area_of, parts))
+    try:
+        whole, summed = area_of(face), sum(map(area_of, parts))
+    except Standard_Failure as error:
+        raise unsplit(what, str(error)) from error
     if abs(whole - summed) > max(LOST_AREA * whole, _unsure_area(face)):
         raise unsplit(what, f"of {whole:.6g} mm2, its pieces cover {summed:.6g} mm2")
 

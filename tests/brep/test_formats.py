@@ -1,6 +1,8 @@
+import os
 import re
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -238,6 +240,24 @@ def test_reader_that_does_not_end_is_stopped(tmp_path, faces, monkeypatch):
         load_model(path)
     monkeypatch.undo()
     assert load_model(path).faces()
+
+
+def test_reader_runs_nothing_that_lies_in_the_current_folder(tmp_path, faces, monkeypatch):
+    path = write_shape(tmp_path / "model.brep", faces[0])
+    for name in ("random", "copy", "numbers", "token", "numpy", "cadpanel"):
+        (tmp_path / f"{name}.py").write_text(f"open('{name} was run', 'w')\nraise SystemExit\n")
+    monkeypatch.chdir(tmp_path)
+    guard.stop_reader()
+    assert load_model(path).faces()
+    assert not list(tmp_path.glob("* was run"))
+
+
+def test_reader_that_nobody_waits_for_ends_itself(tmp_path, faces):
+    """Its time on the processor is limited by the system, which also counts when the first interpreter is gone."""
+    load_model(write_shape(tmp_path / "model.brep", faces[0]))
+    limits = Path(f"/proc/{guard._READER.start().pid}/limits").read_text()
+    (line,) = [line for line in limits.splitlines() if line.startswith("Max cpu time")]
+    assert 0 < int(line.split()[3]) <= (os.cpu_count() or 1) * 2.0 * guard.SECONDS_TO_READ + 60
 
 
 def test_rhino_file_without_rhino3dm_says_how_to_install_it(monkeypatch):

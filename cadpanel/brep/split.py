@@ -72,15 +72,21 @@ def split_faces(faces: Sequence[TopoDS_Face], tools: Sequence[TopoDS_Shape], wha
     except Standard_Failure as error:
         raise unsplit(what, str(error)) from error
     for face, parts in zip(faces, pieces, strict=True):
-        require_whole(face, parts, what)
+        require_whole(face, parts, what, fuzzy)
     return Pieces(faces=pieces, tools=used)
 
 
-def require_whole(face: TopoDS_Face, parts: Sequence[TopoDS_Face], what: str) -> None:
+def require_whole(face: TopoDS_Face, parts: Sequence[TopoDS_Face], what: str, fuzzy: float) -> None:
     """Refuse parts of a face that do not have its area.
 
+    Args:
+        face: what was split.
+        parts: into what.
+        what: the face, for messages.
+        fuzzy: how far its border may have been moved onto another edge, mm.
+
     Raises:
-        ReferenceFileError: they do not, beyond what the tolerances of the face's own edges leave open.
+        ReferenceFileError: they do not, beyond what that and the tolerances of the face's own edges leave open.
     """
     if not _lost(face, parts):
         return
@@ -89,7 +95,7 @@ def require_whole(face: TopoDS_Face, parts: Sequence[TopoDS_Face], what: str) ->
         whole, summed = area_of(face), sum(map(area_of, parts))
     except Standard_Failure as error:
         raise unsplit(what, str(error)) from error
-    if abs(whole - summed) > max(LOST_AREA * whole, _unsure_area(face)):
+    if abs(whole - summed) > max(LOST_AREA * whole, _unsure_area(face, fuzzy)):
         raise unsplit(what, f"of {whole:.6g} mm2, its pieces cover {summed:.6g} mm2")
 
 
@@ -106,14 +112,14 @@ def _lost(face: TopoDS_Face, parts: Sequence[TopoDS_Face]) -> bool:
     return abs(whole - summed) > LOST_AREA * abs(whole)
 
 
-def _unsure_area(face: TopoDS_Face) -> float:
+def _unsure_area(face: TopoDS_Face, fuzzy: float) -> float:
     """The area that lies within the tolerances of a face's edges, mm^2.
 
     An edge's curve in the parameter plane, on which areas are integrated, may lie that far off its curve in space: a
     circle on a spline surface half a millimetre and more, after other programs.
     """
     edges = [TopoDS.Edge_s(edge) for edge in shapes_of(face, TopAbs_EDGE)]
-    return sum(length_of(edge) * float(BRep_Tool.Tolerance_s(edge)) for edge in edges)
+    return sum(length_of(edge) * max(fuzzy, float(BRep_Tool.Tolerance_s(edge))) for edge in edges)
 
 
 def length_of(edge: TopoDS_Edge) -> float:

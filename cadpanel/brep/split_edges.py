@@ -63,7 +63,7 @@ def split_along(faces: Sequence[TopoDS_Face], edges: Sequence[TopoDS_Edge], what
     except Standard_Failure as error:
         raise unsplit(what, str(error)) from error
     for face, parts in zip(faces, pieces, strict=True):
-        require_whole(face, parts, what)
+        require_whole(face, parts, what, fuzzy)
     used = {hash(edge) for edge in shapes_of(whole, TopAbs_EDGE)}
     tools = (tuple(part for part in parts if hash(part) in used) for parts in images)
     return Pieces(faces=pieces, tools=tuple(parts or (edge,) for parts, edge in zip(tools, edges, strict=True)))

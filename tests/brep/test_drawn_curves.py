@@ -16,6 +16,7 @@ from cadpanel.brep.clean import skin_faces
 from cadpanel.brep.connect import surfaces_of
 from cadpanel.brep.curves import sampled
 from cadpanel.brep.model import Label, Model, ModelCurve, Part, compound_of, shapes_of
+from cadpanel.brep.panels import raw_panels
 from cadpanel.brep.project import land_curves
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.select import select_faces
@@ -220,8 +221,10 @@ def test_curve_that_runs_on_beyond_the_joint_of_two_faces_parts_them(tmp_path):
 
 def test_curve_that_cannot_be_followed_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(lay, "ROUNDS", 0)
+    skin = write_shape(tmp_path / "skin.brep", plate())
+    lines = write_shape(tmp_path / "lines.brep", wave(1))
     with pytest.raises(ReferenceFileError, match=r"Curve 1 of 'lines.brep' cannot be followed .* on face 1: draw it"):
-        raw(tmp_path, plate(), [wave(1)])
+        raw_panels(skin, ReferenceSettings(unit="mm", network=lines))
 
 
 def test_curve_over_a_valley_that_it_jumps_stays_in_one_piece(tmp_path):

@@ -3,7 +3,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.Geom import Geom_BezierCurve
 from OCP.GeomAbs import GeomAbs_C2
 from OCP.GeomAPI import GeomAPI_PointsToBSpline
@@ -206,6 +206,37 @@ def obj_text():
     corners = [f"v {3000 * i} {2000 * j} 0" for i in range(4) for j in range(3)]
     faces = [f"f {k} {k + 3} {k + 4} {k + 1}" for i in range(3) for k in (3 * i + 1, 3 * i + 2)]
     return "\n".join([*corners, *faces, ""])
+
+
+@pytest.mark.parametrize("ends", [(0.0, 0.0), (0.02, 0.02), (0.3, 0.3), (0.9, 0.9), (0.0, 0.6), (0.0, -0.02)])
+def test_panels_go_on_across_gaps_within_the_tolerance(folder, ends):
+    """Two plates of 3 by 4 m side by side with a gap, of even width or a wedge, below zero where they overlap."""
+    first = [(0, 0, 0), (3000, 0, 0), (3000, 4000, 0), (0, 4000, 0)]
+    second = [(3000 + ends[0], 0, 0), (6000, 0, 0), (6000, 4000, 0), (3000 + ends[1], 4000, 0)]
+    plates = [flat(first), flat(second)]
+    found = raw(folder, plates, [straight((0, y, 0), (6000, y, 0)) for y in (1000, 2000, 3000)])
+    assert [len(panel.faces) for panel in found.panels] == 4 * [2]
+    assert sum(map(weight, found.panels)) == pytest.approx(24e6, rel=3e-4)
+    how = ReferenceSettings(unit="mm", network=folder / "lines.brep")
+    assert len(read_reference(folder / "skin.brep", how).seams) == 3
+
+
+def test_panels_do_not_go_on_across_a_gap_beyond_the_tolerance(folder):
+    plates = [flat([(x, 0, 0), (x + 3000, 0, 0), (x + 3000, 4000, 0), (x, 4000, 0)]) for x in (0.0, 3001.5)]
+    found = raw(folder, plates, [straight((0, 2000, 0), (6100, 2000, 0))])
+    assert [len(panel.faces) for panel in found.panels] == 4 * [1]
+
+
+def flat(corners):
+    polygon = BRepBuilderAPI_MakePolygon()
+    for corner in corners:
+        polygon.Add(gp_Pnt(*map(float, corner)))
+    polygon.Close()
+    return BRepBuilderAPI_MakeFace(polygon.Wire(), True).Face()
+
+
+def straight(first, last):
+    return BRepBuilderAPI_MakeEdge(gp_Pnt(*map(float, first)), gp_Pnt(*map(float, last))).Edge()
 
 
 def panels_of_plane(folder, text, **how):

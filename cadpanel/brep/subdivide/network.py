@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_INTERNAL
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -20,6 +21,7 @@ from cadpanel.brep.model import shapes_of
 from cadpanel.brep.project import Landing
 from cadpanel.brep.split import Pieces, length_of
 from cadpanel.brep.split_edges import split_along
+from cadpanel.brep.subdivide.bridge import bridges
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
@@ -38,7 +40,8 @@ class _Cut:
 
     Attributes:
         faces: all pieces.
-        links: pairs of pieces that share an edge, with that edge's length and middle, and whether a curve made it.
+        links: pairs of pieces that share an edge, or lie along each other's within the tolerance, with that edge, and
+            whether a curve made it.
         loose: the parts of curves that separate nothing: the curve's index, and the edge.
     """
 
@@ -97,11 +100,11 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
     cut: _Cut | None = None
     for part in FUZZY_PARTS:
         pieces = split_along(faces, [edge for _, edge in owners], what, part * tolerance)
-        cut = _looked_at(pieces, owners)
+        cut = _looked_at(pieces, owners, tolerance)
         if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
             kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
             pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
-            cut = _looked_at(pieces, kept)
+            cut = _looked_at(pieces, kept, tolerance)
         if not cut.loose:
             break
     assert cut is not None
@@ -120,12 +123,13 @@ def _without(
     ]
 
 
-def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cut:
+def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolerance: float) -> _Cut:
     faces = tuple(face for parts in pieces.faces for face in parts)
     around: dict[int, list[int]] = defaultdict(list)
     edges: dict[int, TopoDS_Edge] = {}
     # A curve that ends inside a piece is kept there as an edge on none of its borders.
     inner: set[int] = set()
+    degenerate: set[int] = set()
     for place, face in enumerate(faces):
         for shape in shapes_of(face, TopAbs_EDGE):
             edge = hash(shape)
@@ -133,6 +137,8 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cu
             edges.setdefault(edge, TopoDS.Edge_s(shape))
             if shape.Orientation() == TopAbs_INTERNAL:
                 inner.add(edge)
+            if BRep_Tool.Degenerated_s(TopoDS.Edge_s(shape)):
+                degenerate.add(edge)
     curve_edges: set[int] = set()
     loose: list[tuple[int, TopoDS_Edge]] = []
     for (index, _), parts in zip(owners, pieces.tools, strict=True):
@@ -147,6 +153,12 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]]) -> _Cu
         for edge, users in around.items()
         if len(users) == 2 and users[0] != users[1]
     ]
+    open_edges = [edge for edge, users in around.items() if len(users) == 1 and edge not in degenerate]
+    owner = [number for number, parts in enumerate(pieces.faces) for _ in parts]
+    between = bridges([edges[edge] for edge in open_edges], [owner[around[edge][0]] for edge in open_edges], tolerance)
+    for one, other in ((open_edges[first], open_edges[second]) for first, second in between):
+        made = one in curve_edges or other in curve_edges
+        links.append((around[one][0], around[other][0], edges[one], made))
     return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))))
 
 

@@ -162,12 +162,7 @@ def _over(
         nearest = np.minimum(nearest, np.where(inside, feet.distances, np.inf))
         runs = []
         for (index, piece), start, stop in zip(pieces, starts[:-1], starts[1:], strict=True):
-            own = Feet(
-                parameters=feet.parameters[start:stop],
-                distances=feet.distances[start:stop],
-                on_border=feet.on_border[start:stop],
-            )
-            runs += runs_over(search.patch, index, piece, own, start, reaches[place], tolerance)
+            runs += runs_over(search.patch, index, piece, feet.part(start, stop), start, reaches[place], tolerance)
         stretches = []
         for run, stretch in zip(runs, stretches_of(search, runs, tolerance), strict=True):
             if stretch is not None:

@@ -12,7 +12,7 @@ from cadpanel.brep.boundary import evaluate
 from cadpanel.brep.feet import Feet, Search
 from cadpanel.brep.lay import Stretch
 from cadpanel.brep.patch import Patch
-from cadpanel.brep.smooth import Piece
+from cadpanel.brep.smooth import CLOSE, Piece
 from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
@@ -57,9 +57,14 @@ class Run:
 def runs_over(
     patch: Patch, index: int, piece: Piece, feet: Feet, start: int, reach: float, tolerance: float
 ) -> list[Run]:
-    """The runs of a piece's points over a patch, and those along its border."""
-    inside = (feet.distances <= reach) & ~feet.on_border
-    beside = (feet.distances <= tolerance) & feet.on_border
+    """The runs of a piece's points over a patch, and those along its border.
+
+    Points belong to the border that lie beside it by no more than the tolerance, however far above: a curve over the
+    joint of two faces has no feet inside either.
+    """
+    near = feet.distances <= reach
+    inside = near & ~feet.by_border
+    beside = near & feet.by_border & (feet.asides <= tolerance)
     return [
         Run(curve=index, piece=piece, feet=feet, start=start, first=first, last=last, along=along)
         for chosen, along in ((inside, False), (beside, True))
@@ -119,11 +124,15 @@ def _crossings(search: Search, ends: Sequence[tuple[Run, int]], tolerance: float
     for _ in range(HALVINGS):
         middle = 0.5 * (inner + outer)
         feet = search.feet(points(middle), start)
-        within = along == (feet.on_border & (~along | (feet.distances <= tolerance)))
+        within = np.where(along, feet.by_border & (feet.asides <= tolerance), ~feet.on_border)
         inner, outer = np.where(within, middle, inner), np.where(within, outer, middle)
         start[within] = feet.parameters[within]
     at = np.where(along, inner, outer)
-    reached = search.feet(points(at), start).parameters
+    feet = search.feet(points(at), start)
+    reached = feet.parameters
+    # The next point may lie by the border and not quite on it.
+    for index in np.flatnonzero(~along & feet.by_border & ~feet.on_border).tolist():
+        reached[index] = _clamped(reached[index], bounds)
     for index in np.flatnonzero(np.abs(reached - here).max(axis=1) > JUMP * np.ptp(bounds, axis=1).max()).tolist():
         reached[index] = _clamped(here[index], bounds)
     return list(np.column_stack([at, reached])[:, None])
@@ -143,7 +152,7 @@ def _own_end(search: Search, run: Run, side: int, tolerance: float) -> Array:
     speeds = np.array([np.linalg.norm(along_u), np.linalg.norm(along_v)])
     gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
     if run.along:
-        gaps[gaps <= TOUCH] = np.inf
+        gaps[gaps <= CLOSE] = np.inf
     axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
     if gaps[axis, border] > tolerance:
         return np.zeros((0, 3))

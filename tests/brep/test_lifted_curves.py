@@ -2,13 +2,15 @@
 
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-from OCP.gp import gp_Pln
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
+from OCP.gp import gp_Pln, gp_Pnt
 
 from cadpanel.brep.model import compound_of
 from cadpanel.brep.read import read_raw_panels
+from cadpanel.brep.split import area_of
+from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.test_drawn_curves import LENGTH, WIDTH, line, polyline, raw
+from tests.brep.test_drawn_curves import LENGTH, WIDTH, circle, cut, line, plate, polyline, raw
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
 
@@ -52,6 +54,48 @@ def test_curve_beside_the_outline_by_more_than_the_tolerance_leaves_nothing_on_i
     beside = polyline((-10, -2, 2), (4500, -2, 2), (4500, 2010, 2))
     found = raw(tmp_path, halves(), [across, beside])
     assert len(found.panels) == 3
+
+
+def notched():
+    """The plate without its upper right quarter, which another face fills, a spline, so that the surfaces differ."""
+    corners = ((0, 0), (LENGTH, 0), (LENGTH, 0.5 * WIDTH), (MIDDLE, 0.5 * WIDTH), (MIDDLE, WIDTH), (0, WIDTH))
+    outline = BRepBuilderAPI_MakePolygon()
+    for x, y in corners:
+        outline.Add(gp_Pnt(x, y, 0.0))
+    outline.Close()
+    quarter = kernel_face(
+        lambda u, v: np.stack([MIDDLE * (1.0 + u), 0.5 * WIDTH * (1.0 + v), 0.0 * u], axis=-1), (0, 1)
+    )
+    return compound_of([BRepBuilderAPI_MakeFace(outline.Wire(), True).Face(), quarter])
+
+
+@pytest.mark.parametrize("height", [0.0, 2.0])
+@pytest.mark.parametrize(
+    ("first", "last"),
+    [
+        ((4500, -10), (4500, 2010)),
+        ((4500, 2010), (6010, 1200)),
+        ((-10, 300), (6010, 1800)),
+        ((-10, 999), (6010, 1003)),
+        ((-10, -10 / 3), (6010, 6010 / 3)),
+    ],
+    ids=["through both", "corner of the notch", "aslant", "hardly across the joint", "through the notch's corner"],
+)
+def test_curve_over_a_notch_cuts_what_fills_it_as_a_plate_without_one(tmp_path, first, last, height):
+    curve = line((*first, height), (*last, height))
+    whole = panel_areas(raw(tmp_path, plate(), [curve]))
+    assert len(whole) == 2
+    assert panel_areas(raw(tmp_path, notched(), [curve])) == pytest.approx(whole, rel=1e-6)
+
+
+def test_curve_in_a_hole_lies_over_no_surface(tmp_path):
+    disc = circle((3000.0, 1000.0, 0.0), 500.0)
+    ring = max((face for panel in cut([plate()], [disc]) for face in panel.faces), key=area_of)
+    across, inside = line((-10, 1000, 0), (6010, 1000, 0)), line((2700, 1000, 0), (3300, 1000, 0))
+    assert len(raw(tmp_path, ring, [across]).panels) == 2
+    other = compound_of([ring, BRepBuilderAPI_MakeFace(gp_Pln(), LENGTH, 2 * LENGTH, 0.0, WIDTH).Face()])
+    with pytest.raises(ReferenceFileError, match=r"Curve 2 .* lies over no surface of 'skin.brep': draw it"):
+        raw(tmp_path, other, [across, inside])
 
 
 def dome(u, v):

@@ -15,6 +15,7 @@ from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.feet import Search
 from cadpanel.brep.lay import Stretch, lay
+from cadpanel.brep.loops import uncrossed
 from cadpanel.brep.runs import kept_on_face, runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
 from cadpanel.brep.trimmed import Trim
@@ -124,7 +125,8 @@ def _landings(
     edges: list[list[list[TopoDS_Edge]]] = [[[] for _ in names] for _ in surfaces]
     offsets = [0.0 for _ in surfaces]
     for (place, face), overs in zip(faces, found, strict=True):
-        kept = [over.stretch for over in overs if not (over.apart and over.stretch.curve in landed)]
+        over_face = [over.stretch for over in overs if not (over.apart and over.stretch.curve in landed)]
+        kept = [part for stretch in over_face for part in uncrossed(face.patch, stretch, tolerance)]
         for stretch, edge in zip(kept, lay(face.patch, kept), strict=True):
             if edge is None:
                 called = names[stretch.curve]

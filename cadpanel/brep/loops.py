@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.brep.lay import Stretch
+from cadpanel.brep.lay import SAME, Stretch
 from cadpanel.brep.patch import Patch
 from cadpanel.reference.polyline import arc_length, norm
 
@@ -34,8 +34,9 @@ def uncrossed(patch: Patch, stretch: Stretch, tolerance: float) -> list[Stretch]
     reached = arc_length(patch.points(line))
     pairs = crossings(_drawn_on(line, reached, tolerance))
     at_ends = (reached[pairs[:, 0]] <= tolerance) & (reached[-1] - reached[pairs[:, 1] + 1] <= tolerance)
+    follows = reached[pairs[:, 1]] - reached[pairs[:, 0] + 1] <= SAME * reached[-1]
     closed = norm(np.diff(patch.points(line[[0, -1]]), axis=0))[0] <= tolerance
-    ends = [0, *_cuts(pairs[~(at_ends & closed)]), len(line) - 1]
+    ends = [0, *_cuts(pairs[~(follows | (at_ends & closed))]), len(line) - 1]
     return [
         replace(stretch, places=stretch.places[first : last + 1], line=line[first : last + 1])
         for first, last in pairwise(ends)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cadpanel.brep.boundary import evaluate
+from cadpanel.brep.boundary import evaluate, unit_normals
 from cadpanel.brep.patch import Patch
+from cadpanel.brep.smooth import CLOSE
 from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
@@ -24,11 +25,33 @@ ON_BORDER = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feet:
-    """Nearest points on a patch: (m, 2) parameters, (m,) distances in mm, and (m,) whether each is on the border."""
+    """Nearest points on a patch.
+
+    Attributes:
+        parameters: (m, 2) of the patch.
+        distances: (m,) from the points to them, mm.
+        asides: (m,) how far the points lie beside the patch: their distances along its tangent planes, mm. More than
+            rounding only where the foot is on the border.
+        on_border: (m,) whether each foot is on the border of the parameter range.
+        by_border: (m,) whether it is there, or inside by no more than what cuts may be off.
+    """
 
     parameters: Array
     distances: Array
+    asides: Array
     on_border: NDArray[np.bool_]
+    by_border: NDArray[np.bool_]
+
+    def part(self, start: int, stop: int) -> Feet:
+        """Those from `start` up to `stop`."""
+        own = slice(start, stop)
+        return Feet(
+            parameters=self.parameters[own],
+            distances=self.distances[own],
+            asides=self.asides[own],
+            on_border=self.on_border[own],
+            by_border=self.by_border[own],
+        )
 
 
 class Search:
@@ -61,12 +84,19 @@ class Search:
             uv = new
             if moved <= SMALL_STEP * np.ptp(patch.bounds):
                 break
-        margin = ON_BORDER * (high - low)
-        on_border = np.asarray(np.any((uv <= low + margin) | (uv >= high - margin), axis=1), dtype=np.bool_)
+        feet, along_u, along_v = evaluate(patch.surface, uv)
+        gaps = np.minimum(uv - low, high - uv)
+        on_border = np.asarray(np.any(gaps <= ON_BORDER * (high - low), axis=1), dtype=np.bool_)
+        close = gaps * np.stack([norm(along_u), norm(along_v)], axis=1) <= CLOSE
+        away = points - feet
+        normals = unit_normals(along_u, along_v)[0]
+        beside = away - np.sum(away * normals, axis=1)[:, None] * normals
         return Feet(
             parameters=uv,
-            distances=norm(points - patch.points(uv)),
+            distances=norm(away),
+            asides=norm(beside),
             on_border=on_border,
+            by_border=on_border | close.any(axis=1),
         )
 
 

@@ -7,20 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
-from OCP.TopAbs import TopAbs_OUT
 from OCP.TopoDS import TopoDS_Edge
 from scipy.spatial import cKDTree
 
-from cadpanel.brep import kernel
 from cadpanel.brep.clean import SkinFace
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
-from cadpanel.brep.feet import Feet, Search
+from cadpanel.brep.feet import Search
 from cadpanel.brep.lay import Stretch, lay
-from cadpanel.brep.patch import Patch
-from cadpanel.brep.runs import runs_over, stretches_of
+from cadpanel.brep.loops import uncrossed
+from cadpanel.brep.runs import kept_on_face, runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
+from cadpanel.brep.trimmed import Trim
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import unit
 
@@ -33,8 +31,6 @@ NEAR = 10.0
 MOSTLY = 0.5
 # A curve goes on from another one where it turns by less than an angle with this cosine.
 ONWARD = 0.94
-# Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
-INSIDE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,7 +125,8 @@ def _landings(
     edges: list[list[list[TopoDS_Edge]]] = [[[] for _ in names] for _ in surfaces]
     offsets = [0.0 for _ in surfaces]
     for (place, face), overs in zip(faces, found, strict=True):
-        kept = [over.stretch for over in overs if not (over.apart and over.stretch.curve in landed)]
+        over_face = [over.stretch for over in overs if not (over.apart and over.stretch.curve in landed)]
+        kept = [part for stretch in over_face for part in uncrossed(face.patch, stretch, tolerance)]
         for stretch, edge in zip(kept, lay(face.patch, kept), strict=True):
             if edge is None:
                 called = names[stretch.curve]
@@ -158,18 +155,18 @@ def _over(
     for place, face in faces:
         search = Search(face.patch)
         feet = search.feet(points)
-        inside = np.ones(len(points), dtype=np.bool_) if len(faces) == 1 else _in_face(face.patch, feet, reaches[place])
+        inside = np.asarray(feet.distances <= reaches[place], dtype=np.bool_)
+        trim = None if face.patch.whole else Trim(face.patch)
+        if trim is not None:
+            inside[inside] = trim.encloses(feet.parameters[inside])
         nearest = np.minimum(nearest, np.where(inside, feet.distances, np.inf))
         runs = []
         for (index, piece), start, stop in zip(pieces, starts[:-1], starts[1:], strict=True):
-            own = Feet(
-                parameters=feet.parameters[start:stop],
-                distances=feet.distances[start:stop],
-                on_border=feet.on_border[start:stop],
-            )
-            runs += runs_over(search.patch, index, piece, own, start, reaches[place], tolerance)
+            runs += runs_over(search.patch, index, piece, feet.part(start, stop), start, reaches[place], tolerance)
+        if trim is not None:
+            runs = kept_on_face(runs, trim, inside, tolerance)
         stretches = []
-        for run, stretch in zip(runs, stretches_of(search, runs, tolerance), strict=True):
+        for run, stretch in zip(runs, stretches_of(search, runs, tolerance, trim), strict=True):
             if stretch is not None:
                 first, last = run.start + run.first, run.start + run.last
                 where = first + np.flatnonzero(inside[first : last + 1])
@@ -185,13 +182,3 @@ def _over(
         ]
         for stretches in found
     ]
-
-
-def _in_face(patch: Patch, feet: Feet, reach: float) -> NDArray[np.bool_]:
-    """Which feet lie on the face, and not only on its surface beyond the border."""
-    inside = np.asarray(feet.distances <= reach, dtype=np.bool_)
-    if not patch.whole:
-        test = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds, axis=1).min()))
-        for place in np.flatnonzero(inside).tolist():
-            inside[place] = test.Perform(kernel.point_2d(*feet.parameters[place].tolist())) != TopAbs_OUT
-    return inside

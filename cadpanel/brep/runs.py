@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,8 @@ from cadpanel.brep.boundary import evaluate
 from cadpanel.brep.feet import Feet, Search
 from cadpanel.brep.lay import Stretch
 from cadpanel.brep.patch import Patch
-from cadpanel.brep.smooth import Piece
+from cadpanel.brep.smooth import CLOSE, Piece
+from cadpanel.brep.trimmed import Trim
 from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
@@ -39,6 +40,7 @@ class Run:
         first: the first of the points that lie over the patch.
         last: the last of them.
         along: whether they lie along its border.
+        cut_short: whether at the first and at the last of them the curve leaves the face, though not its surface.
     """
 
     curve: int
@@ -48,6 +50,7 @@ class Run:
     first: int
     last: int
     along: bool
+    cut_short: tuple[bool, bool] = (False, False)
 
     def goes_on(self, side: int) -> bool:
         """Whether the piece has a point beyond the first (-1) or the last one (1)."""
@@ -57,14 +60,47 @@ class Run:
 def runs_over(
     patch: Patch, index: int, piece: Piece, feet: Feet, start: int, reach: float, tolerance: float
 ) -> list[Run]:
-    """The runs of a piece's points over a patch, and those along its border."""
-    inside = (feet.distances <= reach) & ~feet.on_border
-    beside = (feet.distances <= tolerance) & feet.on_border
+    """The runs of a piece's points over a patch, and those along its border.
+
+    Points belong to the border that lie beside it by no more than the tolerance, however far above: a curve over the
+    joint of two faces has no feet inside either.
+    """
+    near = feet.distances <= reach
+    inside = near & ~feet.by_border
+    beside = near & feet.by_border & (feet.asides <= tolerance)
     return [
         Run(curve=index, piece=piece, feet=feet, start=start, first=first, last=last, along=along)
         for chosen, along in ((inside, False), (beside, True))
         for first, last in _parted(chosen, feet.parameters, patch)
     ]
+
+
+def kept_on_face(runs: Sequence[Run], trim: Trim, enclosed: NDArray[np.bool_], tolerance: float) -> list[Run]:
+    """Runs without what lies clearly beyond the border of the face; one of which nothing is left is kept out.
+
+    Args:
+        runs: over the face's surface.
+        trim: the face's border.
+        enclosed: of the points of all pieces, those whose feet lie on the face.
+        tolerance: what runs this close beside the border stays, mm.
+    """
+    found = []
+    for run in runs:
+        own = enclosed[run.start + run.first : run.start + run.last + 1]
+        left = np.ones(len(own), dtype=np.bool_)
+        for first, last in _stretches(np.flatnonzero(~own)):
+            line = run.feet.parameters[run.first + first : run.first + last + 1]
+            left[first : last + 1] = not trim.leaves_out(line, tolerance)
+        for first, last in _stretches(np.flatnonzero(left)):
+            short = (first > 0, last < len(own) - 1)
+            found.append(replace(run, first=run.first + first, last=run.first + last, cut_short=short))
+    return found
+
+
+def _stretches(places: NDArray[np.intp]) -> list[tuple[int, int]]:
+    """First and last of each stretch of rising places that follow each other."""
+    parts = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
+    return [(int(part[0]), int(part[-1])) for part in parts if len(part)]
 
 
 def _parted(chosen: NDArray[np.bool_], parameters: Array, patch: Patch) -> list[tuple[int, int]]:
@@ -79,11 +115,18 @@ def _parted(chosen: NDArray[np.bool_], parameters: Array, patch: Patch) -> list[
     return list(zip(places[firsts].tolist(), places[lasts].tolist(), strict=True))
 
 
-def stretches_of(search: Search, runs: Sequence[Run], tolerance: float) -> list[Stretch | None]:
-    """The stretch of each run, up to the border where the curve reaches it; None where it hardly touches the patch."""
+def stretches_of(search: Search, runs: Sequence[Run], tolerance: float, trim: Trim | None) -> list[Stretch | None]:
+    """The stretch of each run, up to the border where the curve reaches it; None where it hardly touches the patch.
+
+    Args:
+        search: on the patch.
+        runs: over it.
+        tolerance: what ends this close to the border reaches it, mm.
+        trim: the border of its face, where that cuts runs short.
+    """
     ends = [(run, side) for run in runs for side in (-1, 1)]
     crossing = [end for end in ends if end[0].goes_on(end[1])]
-    crossed = iter(_crossings(search, crossing, tolerance))
+    crossed = iter(_crossings(search, crossing, tolerance, trim))
     added = [next(crossed) if run.goes_on(side) else _own_end(search, run, side, tolerance) for run, side in ends]
     found: list[Stretch | None] = []
     for run, before, after in zip(runs, added[::2], added[1::2], strict=True):
@@ -98,15 +141,17 @@ def stretches_of(search: Search, runs: Sequence[Run], tolerance: float) -> list[
     return found
 
 
-def _crossings(search: Search, ends: Sequence[tuple[Run, int]], tolerance: float) -> list[Array]:
+def _crossings(search: Search, ends: Sequence[tuple[Run, int]], tolerance: float, trim: Trim | None) -> list[Array]:
     """What to add to runs at ends where the curve goes on: (1, 3) the parameter of the piece, and two of the patch.
 
-    That is where it leaves the border after a run along it, else where it reaches the border.
+    That is where it leaves the border after a run along it, else where it reaches the border: that of the face where it
+    cuts the run short, or that of its surface.
     """
     if not ends:
         return []
     bounds = search.patch.bounds
     along = np.array([run.along for run, _ in ends])
+    cut_short = np.flatnonzero([run.cut_short[0 if side < 0 else 1] for run, side in ends])
     places = [run.last if side > 0 else run.first for run, side in ends]
     here = np.array([run.feet.parameters[place] for (run, _), place in zip(ends, places, strict=True)])
     inner = np.array([run.piece.parameters[place] for (run, _), place in zip(ends, places, strict=True)])
@@ -119,11 +164,17 @@ def _crossings(search: Search, ends: Sequence[tuple[Run, int]], tolerance: float
     for _ in range(HALVINGS):
         middle = 0.5 * (inner + outer)
         feet = search.feet(points(middle), start)
-        within = along == (feet.on_border & (~along | (feet.distances <= tolerance)))
+        within = np.where(along, feet.by_border & (feet.asides <= tolerance), ~feet.on_border)
+        if trim is not None and len(cut_short):
+            within[cut_short] = trim.encloses(feet.parameters[cut_short])
         inner, outer = np.where(within, middle, inner), np.where(within, outer, middle)
         start[within] = feet.parameters[within]
     at = np.where(along, inner, outer)
-    reached = search.feet(points(at), start).parameters
+    feet = search.feet(points(at), start)
+    reached = feet.parameters
+    # The next point may lie by the border and not quite on it.
+    for index in np.setdiff1d(np.flatnonzero(~along & feet.by_border & ~feet.on_border), cut_short).tolist():
+        reached[index] = _clamped(reached[index], bounds)
     for index in np.flatnonzero(np.abs(reached - here).max(axis=1) > JUMP * np.ptp(bounds, axis=1).max()).tolist():
         reached[index] = _clamped(here[index], bounds)
     return list(np.column_stack([at, reached])[:, None])
@@ -143,7 +194,7 @@ def _own_end(search: Search, run: Run, side: int, tolerance: float) -> Array:
     speeds = np.array([np.linalg.norm(along_u), np.linalg.norm(along_v)])
     gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
     if run.along:
-        gaps[gaps <= TOUCH] = np.inf
+        gaps[gaps <= CLOSE] = np.inf
     axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
     if gaps[axis, border] > tolerance:
         return np.zeros((0, 3))

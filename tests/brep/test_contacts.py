@@ -45,8 +45,8 @@ def face(number, outer, hole=(), reversed_=False):
 def test_a_flap_at_any_edge_folds_by_its_angle(plate, fold, turned, seed):
     rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
     rotation *= np.linalg.det(rotation)
-    rise = 500.0 * np.array([np.cos(np.radians(fold)), np.sin(np.radians(fold))])
-    flap = [(1000.0, 1000.0, 0.0), (3000.0, 1000.0, 0.0), (3000.0, *(rise + [1000, 0])), (1000.0, *(rise + [1000, 0]))]
+    y, z = 1000.0 + 500.0 * np.cos(np.radians(fold)), 500.0 * np.sin(np.radians(fold))
+    flap = [(1000.0, 1000.0, 0.0), (3000.0, 1000.0, 0.0), (3000.0, y, z), (1000.0, y, z)]
 
     def placed(corners):
         return np.array([(*corner, 0.0)[:3] for corner in corners]) @ rotation.T
@@ -59,7 +59,8 @@ def test_a_flap_at_any_edge_folds_by_its_angle(plate, fold, turned, seed):
     contacts = contacts_of(faces, 0.1)
     # The flap of a plate's slot also touches both its sides as it lies flat.
     folds = [contact.fold for contact in contacts if abs(contact.point @ rotation[:, 1] - 1000.0) < 1.0]
-    assert folds == pytest.approx([fold] * len(folds), abs=1e-3) and folds
+    assert folds
+    assert folds == pytest.approx([fold] * len(folds), abs=1e-3)
 
 
 @pytest.mark.parametrize("plate", ["hole", "small hole", "notch", "slot"])

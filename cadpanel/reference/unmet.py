@@ -31,7 +31,7 @@ EVERY = 4
 
 
 def unmet_notes(
-    sheets: Sequence[Sheet], contacts: Sequence[SideContact], source: str, tolerance: float
+    sheets: Sequence[Sheet], contacts: Sequence[SideContact], source: str, tolerance: float, junctions: bool = False
 ) -> tuple[str, ...]:
     """What to say of sides that touch others along a part only, or run along others farther away than the tolerance.
 
@@ -40,6 +40,7 @@ def unmet_notes(
         contacts: the seams between them.
         source: the file's name.
         tolerance: how far sides that meet may lie apart, mm.
+        junctions: whether sides were parted at the corners of others already.
     """
     if len(sheets) < 2:
         return ()
@@ -73,7 +74,7 @@ def unmet_notes(
         for distance, one, other in apart
         if shares[one] < ALONG and shares[other] < ALL_ALONG
     )
-    return (*_touching_note(sorted(set(touching)), source), *_apart_note(lonely, source, tolerance))
+    return (*_touching_note(sorted(set(touching)), source, junctions), *_apart_note(lonely, source, tolerance))
 
 
 def _shares(lines: Array, pairs: IntArray, tolerance: float) -> IntArray:
@@ -95,14 +96,20 @@ def _named(sheets: Sequence[Sheet], one: int, other: int) -> tuple[str, str]:
     return first, second
 
 
-def _touching_note(pairs: Sequence[tuple[str, str]], source: str) -> tuple[str, ...]:
+def _touching_note(pairs: Sequence[tuple[str, str]], source: str, junctions: bool) -> tuple[str, ...]:
     if not pairs:
         return ()
     first, second = pairs[0]
     many = f"{len(pairs)} pairs of panels" if len(pairs) > 1 else "Two panels"
+    # See `part_sides`.
+    remedy = (
+        "a triangle with a single corner of others on its sides stays whole, so cut it in two there"
+        if junctions
+        else "or give --junctions and --feature planar-polygon"
+    )
     return (
         f"{many} of '{source}' touch along a part of an edge only, like '{first}' and '{second}': no seam is held "
-        "there; cut both sides at the same places, or give --junctions and --feature planar-polygon.",
+        f"there; cut both sides at the same places{';' if junctions else ','} {remedy}.",
     )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
-from OCP.TopAbs import TopAbs_EDGE
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
@@ -37,11 +37,24 @@ NUDGE = 1e-4
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """One boundary edge of a face: (q, 3) points in mm, the face's (q, 3) unit normals, and (q, 2) parameters."""
+    """One boundary edge of a face.
+
+    Attributes:
+        points: (q, 3) mm.
+        normals: (q, 3) unit normals of the face there.
+        parameters: (q, 2) of its surface.
+        left: 1 where the face lies to the left of the edge as its normals have it, -1 where to the right.
+    """
 
     points: Array
     normals: Array
     parameters: Array
+    left: float
+
+    def inwards(self, place: int) -> Array:
+        """(3,) the unit direction from a point that is none of its ends into the face, square to the edge."""
+        along = self.points[place + 1] - self.points[place - 1]
+        return unit(self.left * cross(self.normals[place], along))
 
 
 class _Samples(NamedTuple):
@@ -93,11 +106,11 @@ def sample_edges(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, bounds: A
             towards the middle.
         sides: (F,) -1 where a face is reversed against its surface, else 1.
     """
-    found = [(index, curve) for index, face in enumerate(faces) for curve in _curves(face)]
+    found = [(index, *curve) for index, face in enumerate(faces) for curve in _curves(face)]
     edges: list[list[Edge]] = [[] for _ in faces]
     if not found:
         return edges
-    owners, curves = np.array([index for index, _ in found]), [curve for _, curve in found]
+    owners, curves = np.array([index for index, _, _ in found]), [curve for _, curve, _ in found]
     parameters = _curve_values(curves, np.array([_even_positions(curve) for curve in curves]))
     points, along_u, along_v = surfaces.evaluate(owners[:, None], parameters)
     normals, _, defined = unit_normals(along_u, along_v, owners[:, None])
@@ -106,36 +119,40 @@ def sample_edges(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, bounds: A
     # Points that are fewer than the curve's spans may all lie where it crosses its own middle.
     faulty = np.asarray(coarse | uneven | [_knots(curve) > FEWEST_POINTS for curve in curves])
     signed = sides[owners, None, None] * normals
-    for index, owner in enumerate(owners.tolist()):
+    for index, (owner, _, left) in enumerate(found):
         if whole[index] and not faulty[index]:
-            edge = Edge(points[index], signed[index], parameters[index])
+            edge = Edge(points[index], signed[index], parameters[index], left)
         else:
             samples = _Samples(points[index], normals[index], defined[index], parameters[index])
             if faulty[index]:
                 samples = _refined(curves[index], surfaces, owner)
-            edge = _edge(samples, surfaces, owner, middles[owner], sides[owner])
+            edge = _edge(samples, surfaces, owner, middles[owner], sides[owner], left)
         edges[owner].append(edge)
     return edges
 
 
-def _curves(face: TopoDS_Face) -> Iterator[BRepAdaptor_Curve2d]:
-    """The edges of a face as curves in its parameter plane."""
+def _curves(face: TopoDS_Face) -> Iterator[tuple[BRepAdaptor_Curve2d, float]]:
+    """The edges of a face as curves in its parameter plane, each with the side on which the face lies.
+
+    The explorer turns edges round with their face, so that a face has its inside to the left of them all, seen from
+    where its normals point.
+    """
     explorer = TopExp_Explorer(face, TopAbs_EDGE)
     while explorer.More():
         edge = TopoDS.Edge_s(explorer.Current())
         if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
-            yield BRepAdaptor_Curve2d(edge, face)
+            yield BRepAdaptor_Curve2d(edge, face), -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0
         explorer.Next()
 
 
-def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, side: float) -> Edge:
+def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, side: float, left: float) -> Edge:
     """Make an edge of its samples, with the normals that the surface does not define taken from next to them."""
     normals = samples.normals
     if not samples.defined.all():
         nudged = samples.parameters + NUDGE * (middle - samples.parameters)
         _, along_u, along_v = surfaces.evaluate(np.array(face), nudged)
         normals = np.where(samples.defined[:, None], normals, unit(cross(along_u, along_v)))
-    return Edge(samples.points, side * normals, samples.parameters)
+    return Edge(samples.points, side * normals, samples.parameters, left)
 
 
 def _refined(curve: BRepAdaptor_Curve2d, surfaces: SurfaceBatch, face: int) -> _Samples:

@@ -15,8 +15,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.brep.boundary import Edge
 from cadpanel.brep.clean import SkinFace
-from cadpanel.brep.patch import Patch
-from cadpanel.reference.polyline import distances_to_curves, norm, unit
+from cadpanel.reference.polyline import distances_to_curves, norm
 
 Array = NDArray[np.float64]
 
@@ -24,8 +23,6 @@ Array = NDArray[np.float64]
 PROBES = (0.25, 0.5, 0.75)
 # Faces that fold back by more than this where they touch, like a wing's at its trailing edge, are not joined, degrees.
 KNIFE_EDGE = 135.0
-# Step by which the way into a face is felt for from its edge, as a part of the way to the middle of its range.
-INWARDS = 1e-3
 # Edges must lie this close to each other, as a part of the shorter one's length, to touch along and not across.
 LONG_ENOUGH = 0.1
 # Points looked at around a probe, in case that the other edge is sampled more coarsely.
@@ -170,20 +167,17 @@ def contacts_of(faces: Sequence[SkinFace], tolerance: float) -> list[Contact]:
         gap = min(there, back)
         if gap <= min(tolerance, LONG_ENOUGH * _length(one.points), LONG_ENOUGH * _length(other.points)):
             point = point if there <= back else other_point
-            fold = _fold(faces[a].patch, one, faces[b].patch, other, point)
+            fold = _fold(one, other, point)
             contacts.append(Contact(faces=(a, b), point=point, gap=gap, fold=fold))
     return sorted(contacts, key=lambda contact: (contact.faces, contact.point.tolist()))
 
 
-def _fold(patch: Patch, edge: Edge, other_patch: Patch, other_edge: Edge, point: Array) -> float:
+def _fold(edge: Edge, other: Edge, point: Array) -> float:
     """By how much the way turns that comes out of one face and goes on into the other, degrees."""
     ways = []
-    for owner, border in ((patch, edge), (other_patch, other_edge)):
+    for border in (edge, other):
         near = int(np.clip(np.argmin(norm(border.points - point)), 1, len(border.points) - 2))
-        start = border.parameters[near]
-        inside = owner.points(start + INWARDS * (owner.bounds.mean(axis=1) - start)) - border.points[near]
-        along = unit(border.points[near + 1] - border.points[near - 1])
-        ways.append(unit(inside - (inside @ along) * along))
+        ways.append(border.inwards(near))
     return float(np.degrees(np.arccos(np.clip(-(ways[0] @ ways[1]), -1.0, 1.0))))
 
 

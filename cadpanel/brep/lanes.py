@@ -7,7 +7,6 @@ continuous cut, and each piece is exactly the surface that it was.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,6 +27,7 @@ ALIKE = 1.5
 STRAIGHT = 2e-7
 # How closely neighbouring lanes must agree at equal parts, mm.
 COMMON = 1e-3
+ENDS = np.array([0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +47,14 @@ class Lane:
     def border(self, across: float, parts: Array) -> Array:
         """(k, 3) points of the border at `across` (0 or 1) at (k,) parts of the way along the strip."""
         return self.patch.points(self.patch.at(self.axis, self.own(parts), np.full(len(parts), across)))
+
+    def end(self, part: float, across: Array) -> Array:
+        """(k, 3) points of the end at `part` (0 or 1) of the way along the strip, at (k,) parts of the way across."""
+        return self.patch.points(self.patch.at(self.axis, self.own(np.full(len(across), part)), across))
+
+    def turned(self) -> Lane:
+        """The same lane walked the other way."""
+        return replace(self, forward=not self.forward)
 
     def own(self, parts: Array) -> Array:
         """Parts of the way along the strip as parts of the lane's own range."""
@@ -88,6 +96,20 @@ class Lanes:
                 group.append(rectangle(lane.patch, *ranges))
         return groups
 
+    def turned(self) -> Lanes:
+        """The same lanes walked the other way."""
+        return replace(self, lanes=tuple(lane.turned() for lane in self.lanes))
+
+    def middles(self, parts: Array) -> Array:
+        """(k, 3) points midway between the two long edges at (k,) parts of the way along them."""
+        edges = [self.lanes[lane].border(side, parts) for lane, side in self.outer]
+        return np.asarray(np.mean(edges, axis=0), dtype=np.float64)
+
+    @property
+    def width(self) -> float:
+        """How far it is from one long edge to the other, in the mean of both ends, mm."""
+        return sum(float(lengths_along(one.patch, 1 - one.axis, ENDS)[:, -1].mean()) for one in self.lanes)
+
     def order(self) -> list[tuple[int, bool]] | None:
         """The lanes in their order across the strip, each with whether it is walked along its other parameter.
 
@@ -111,7 +133,7 @@ class Lanes:
         return equal_parts(self.reach(), parts)
 
 
-def find_lanes(surface: Surface, *, crosswise: bool = False) -> Lanes | None:
+def find_lanes(surface: Surface) -> Lanes | None:
     """The surface as lanes side by side, or None where its faces are trimmed or do not share a parameter.
 
     The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one. It begins at
@@ -119,7 +141,6 @@ def find_lanes(surface: Surface, *, crosswise: bool = False) -> Lanes | None:
 
     Args:
         surface: any.
-        crosswise: take the direction in which normals turn fast instead.
     """
     patches = [face.patch for face in surface.faces]
     if not all(patch.whole for patch in patches):
@@ -127,14 +148,14 @@ def find_lanes(surface: Surface, *, crosswise: bool = False) -> Lanes | None:
     rates = [_turning_rates(patch) for patch in patches]
     first = max(range(len(patches)), key=lambda index: max(rates[index][0]))
     axis = _slow_axis(*rates[first])
-    lanes: dict[int, Lane] = {first: Lane(patch=patches[first], axis=1 - axis if crosswise else axis, forward=True)}
-    neighbours = _neighbours(surface)
+    lanes: dict[int, Lane] = {first: Lane(patch=patches[first], axis=axis, forward=True)}
+    neighbours = neighbours_of(surface)
     joints: set[tuple[tuple[int, float], tuple[int, float]]] = set()
     front = [first]
     while front:
         index = front.pop()
         for other, point in neighbours[index]:
-            found = _match(lanes[index], lanes.get(other), patches[other], point)
+            found = match_beside(lanes[index], lanes.get(other), patches[other], point)
             if found is None:
                 return None
             lane, own_side, other_side = found
@@ -176,7 +197,7 @@ def _slow_axis(rates: tuple[float, float], lengths: tuple[float, float]) -> int:
     return int(rates[1] < rates[0])
 
 
-def _neighbours(surface: Surface) -> list[list[tuple[int, Array]]]:
+def neighbours_of(surface: Surface) -> list[list[tuple[int, Array]]]:
     """For each face the others that it touches, each with a point of the edge between them."""
     neighbours: list[list[tuple[int, Array]]] = [[] for _ in surface.faces]
     for contact in surface.contacts:
@@ -186,22 +207,46 @@ def _neighbours(surface: Surface) -> list[list[tuple[int, Array]]]:
     return neighbours
 
 
-def _match(lane: Lane, known: Lane | None, patch: Patch, point: Array) -> tuple[Lane, float, float] | None:
+def match_beside(lane: Lane, known: Lane | None, patch: Patch, point: Array) -> tuple[Lane, float, float] | None:
     """The neighbour as a lane, and the sides on which the two meet with the same points at the same parts.
 
     Only borders that pass by the (3,) point are looked at: two faces may also meet elsewhere, in a knife edge.
     """
     parts = np.linspace(0.0, 1.0, MEASURED_LINES)
-    candidates = [known] if known else [Lane(patch=patch, axis=a, forward=f) for a in (0, 1) for f in (True, False)]
     for own_side in (0.0, 1.0):
         border = lane.border(own_side, parts)
-        if norm(border - point).min() > norm(np.diff(border, axis=0)).max():
+        if not _passes(border, point):
             continue
-        for candidate in candidates:
+        for candidate in _candidates(known, patch):
             for side in (0.0, 1.0):
                 if norm(candidate.border(side, parts) - border).max() <= COMMON:
                     return candidate, own_side, side
     return None
+
+
+def match_behind(lane: Lane, known: Lane | None, patch: Patch, point: Array) -> tuple[Lane, float] | None:
+    """The neighbour as a lane that goes on from this one, and at which end of this one the two meet.
+
+    Their ends have the same points at the same parts. Only an end that passes by the (3,) point is looked at.
+    """
+    parts = np.linspace(0.0, 1.0, MEASURED_LINES)
+    for own_end in (0.0, 1.0):
+        end = lane.end(own_end, parts)
+        if not _passes(end, point):
+            continue
+        for candidate in _candidates(known, patch):
+            other = candidate.end(1.0 - own_end, parts)
+            if min(norm(other - end).max(), norm(other[::-1] - end).max()) <= COMMON:
+                return candidate, own_end
+    return None
+
+
+def _passes(border: Array, point: Array) -> bool:
+    return bool(norm(border - point).min() <= norm(np.diff(border, axis=0)).max())
+
+
+def _candidates(known: Lane | None, patch: Patch) -> list[Lane]:
+    return [known] if known else [Lane(patch=patch, axis=a, forward=f) for a in (0, 1) for f in (True, False)]
 
 
 def _forwards(lanes: Lanes) -> Lanes:
@@ -216,5 +261,4 @@ def _forwards(lanes: Lanes) -> Lanes:
     way = ends[1] - ends[0]
     if way[np.abs(way).argmax()] >= -COMMON:
         return lanes
-    turned: Sequence[Lane] = [Lane(patch=lane.patch, axis=lane.axis, forward=not lane.forward) for lane in lanes.lanes]
-    return replace(lanes, lanes=tuple(turned))
+    return lanes.turned()

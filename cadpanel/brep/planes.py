@@ -59,9 +59,13 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
             groups[place].append(piece)
     empty = next((index for index, group in enumerate(groups) if not group), None)
     if empty is not None:
+        last = len(cuts.origins)
+        where = {0: "Before the first cut", last: "Beyond the last cut"}.get(
+            empty, f"Between cuts {empty} and {empty + 1}"
+        )
         raise ReferenceFileError(
-            f"Between cuts {empty} and {empty + 1} of {len(cuts.origins)} there is nothing of the surface of "
-            f"{surface.numbers} of '{source}': give fewer cuts, or cuts that lie on the surface."
+            f"{where} of {last} there is nothing of the surface of {surface.numbers} of '{source}': give fewer cuts, "
+            "or cuts that lie on the surface."
         )
     return groups
 

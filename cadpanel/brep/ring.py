@@ -1,4 +1,4 @@
-"""Whole faces that follow each other round a ring, cut across it along their own parameter lines."""
+"""Whole faces that follow each other round a ring, in one row or several, cut across it along their parameter lines."""
 
 from __future__ import annotations
 
@@ -9,70 +9,39 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Face
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from cadpanel.brep.connect import Surface, levels
-from cadpanel.brep.lanes import Lane, Lanes, find_lanes
-from cadpanel.brep.patch import equal_parts, lengths_along, rectangle
+from cadpanel.brep.lanes import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
+from cadpanel.brep.patch import equal_parts
 from cadpanel.reference.polyline import cross
 
 Array = NDArray[np.float64]
 
 # Places within this of each other along an axis of space, in mm, count as equally far along it.
 LEVEL = 1.0
-ENDS = np.array([0.0, 1.0])
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Link:
-    """One face of a ring: a lane across it, walked along the ring from its side 0 to its side 1, or back."""
-
-    lane: Lane
-    forward: bool
-
-    @property
-    def around(self) -> int:
-        """The parameter that runs round the ring, 0 for u and 1 for v."""
-        return 1 - self.lane.axis
-
-    @property
-    def reach(self) -> Array:
-        """(INTERVALS + 1,) mean length of its two borders up to even parts of the way round it, mm."""
-        reach = lengths_along(self.lane.patch, self.around, ENDS).mean(axis=0)
-        return np.asarray(reach if self.forward else reach[-1] - reach[::-1])
-
-    def middles(self, parts: Array) -> Array:
-        """(k, 3) points midway across it at (k,) parts of the way round it."""
-        patch = self.lane.patch
-        return patch.points(patch.at(self.around, self._own(parts), np.full(len(parts), 0.5)))
-
-    def between(self, first: float, last: float) -> TopoDS_Face:
-        """What lies between two parts of the way round it."""
-        low, high = self.lane.patch.bounds[self.around]
-        start, stop = sorted((low + self._own(np.array([first, last])) * (high - low)).tolist())
-        across = tuple(self.lane.patch.bounds[self.lane.axis].tolist())
-        ranges = ((start, stop), across) if self.around == 0 else (across, (start, stop))
-        return rectangle(self.lane.patch, *ranges)
-
-    def _own(self, parts: Array) -> Array:
-        return parts if self.forward else 1.0 - parts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ring:
-    """Faces that follow each other until they are back at the first."""
+    """Faces that follow each other until they are back at the first.
 
-    links: tuple[Link, ...]
+    Attributes:
+        columns: the faces side by side across the ring, all walked round it the same way, column after column.
+    """
+
+    columns: tuple[Lanes, ...]
 
     @property
     def length(self) -> float:
         """Of the way round, in the mean of the two edges, mm."""
-        return sum(float(link.reach[-1]) for link in self.links)
+        return sum(float(column.reach()[-1]) for column in self.columns)
 
     @property
     def width(self) -> float:
         """Mean length from one edge to the other, mm."""
-        widths = [float(lengths_along(link.lane.patch, link.lane.axis, ENDS)[:, -1].mean()) for link in self.links]
-        return float(np.mean(widths))
+        return float(np.mean([column.width for column in self.columns]))
 
     def cut(self, count: int, tolerance: float) -> list[list[TopoDS_Face]]:
         """The faces of each of so many panels of equal length round the ring.
@@ -84,52 +53,126 @@ class Ring:
         groups: list[list[TopoDS_Face]] = [[] for _ in range(count)]
         step = self.length / count
         start = 0.0
-        for link in self.links:
-            reach = link.reach
+        for column in self.columns:
+            reach = column.reach()
             stop = start + float(reach[-1])
             cuts = np.arange(count + 1) * step
             inside = cuts[(cuts > start + tolerance) & (cuts < stop - tolerance)]
             borders = np.concatenate([[start], inside, [stop]])
             parts = np.concatenate([[0.0], equal_parts(reach, (inside - start) / reach[-1]), [1.0]])
-            for places, (first, last) in zip(pairwise(borders), pairwise(parts.tolist()), strict=True):
-                groups[min(int(np.mean(places) / step), count - 1)].append(link.between(first, last))
+            for places, pieces in zip(pairwise(borders), column.cut(parts), strict=True):
+                groups[min(int(np.mean(places) / step), count - 1)] += pieces
             start = stop
         return groups
 
 
-def find_ring(surface: Surface) -> Ring | None:
-    """The surface as a ring, or None where it is none, closes both ways, or its faces share no parameter across it.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Walk:
+    """Faces walked round a ring.
 
-    The ring begins where two faces meet, or the one meets itself, at the place that comes first in space (by x, then y,
-    then z), and runs counterclockwise about the axis of space about which it mostly turns.
+    Attributes:
+        lanes: one a face.
+        beside: the pairs of face and side that lie on each other.
+        behind: the face that follows each, where it ends.
     """
-    for crosswise in (False, True):
-        lanes = find_lanes(surface, crosswise=crosswise)
-        links = None if lanes is None or lanes.outer else _chain(lanes)
-        if links is not None:
-            return None if any(link.lane.patch.closed(link.lane.axis) for link in links) else Ring(links=_begun(links))
+
+    lanes: tuple[Lane, ...]
+    beside: frozenset[tuple[tuple[int, float], tuple[int, float]]]
+    behind: dict[int, int]
+
+
+def find_ring(surface: Surface) -> Ring | None:
+    """The surface as a ring, or None where it is none, closes both ways, or its faces do not meet in whole borders.
+
+    All faces of a column share their parameter round the ring, and columns meet end to end. The ring begins where two
+    columns meet, or the one meets itself, at the place that comes first in space (by x, then y, then z), and runs
+    counterclockwise about the axis of space about which it mostly turns.
+    """
+    if not all(face.patch.whole for face in surface.faces):
+        return None
+    for axis in (0, 1):
+        walk = _walk(surface, axis)
+        columns = None if walk is None else _chain(walk)
+        if columns is not None:
+            return Ring(columns=_begun(columns))
     return None
 
 
-def _chain(lanes: Lanes) -> list[Link] | None:
-    """Lanes side by side, from the first one until it is reached again; None where that leaves some out."""
-    joined = {first: second for pair in lanes.joints for first, second in (pair, pair[::-1])}
-    links = []
-    index, side = 0, 0.0
-    for _ in lanes.lanes:
-        links.append(Link(lane=lanes.lanes[index], forward=side == 0.0))
-        index, side = joined.get((index, 1.0 - side), (index, side))
-        if index == 0:
-            break
-    return links if len(links) == len(lanes.lanes) and index == 0 else None
+def _walk(surface: Surface, axis: int) -> _Walk | None:
+    """All faces walked the way in which the first one is walked by a parameter; None where two do not agree on it."""
+    patches = [face.patch for face in surface.faces]
+    lanes = {0: Lane(patch=patches[0], axis=axis, forward=True)}
+    neighbours = neighbours_of(surface)
+    beside: set[tuple[tuple[int, float], tuple[int, float]]] = set()
+    behind: dict[int, int] = {}
+    front = [0]
+    while front:
+        index = front.pop()
+        for other, point in neighbours[index]:
+            known = lanes.get(other)
+            side, end = match_beside(lanes[index], known, patches[other], point), None
+            if side is not None:
+                lane, own_side, other_side = side
+                beside.add(((index, own_side), (other, other_side)))
+            else:
+                end = match_behind(lanes[index], known, patches[other], point)
+                if end is None:
+                    return None
+                lane, own_end = end
+                first, second = (index, other) if own_end == 1.0 else (other, index)
+                if behind.setdefault(first, second) != second:
+                    return None
+            if known is None:
+                lanes[other] = lane
+                front.append(other)
+    if len(lanes) < len(patches):
+        return None
+    return _Walk(lanes=tuple(lanes[index] for index in range(len(patches))), beside=frozenset(beside), behind=behind)
 
 
-def _begun(links: Sequence[Link]) -> tuple[Link, ...]:
+def _chain(walk: _Walk) -> list[Lanes] | None:
+    """The columns from the first one until it is reached again; None where they do not close to one ring."""
+    count = len(walk.lanes)
+    pairs = np.array([(one, other) for (one, _), (other, _) in walk.beside], dtype=np.intp).reshape(-1, 2)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    number, labels = connected_components(graph, directed=False)
+    found = [_column(walk, np.flatnonzero(labels == label).tolist()) for label in range(number)]
+    columns = [column for column in found if column is not None]
+    if len(columns) < number:
+        return None
+    if number == 1:
+        return columns if not walk.behind and all(lane.patch.closed(lane.axis) for lane in walk.lanes) else None
+    follows = {(int(labels[one]), int(labels[other])) for one, other in walk.behind.items()}
+    if len(walk.behind) < count or len(follows) != number:
+        return None
+    after, chain = dict(follows), [0]
+    while (label := after[chain[-1]]) not in chain:
+        chain.append(label)
+    return [columns[label] for label in chain] if len(chain) == number and label == 0 else None
+
+
+def _column(walk: _Walk, members: Sequence[int]) -> Lanes | None:
+    """Faces side by side; None where they are no strip between two long edges."""
+    place = {index: position for position, index in enumerate(members)}
+    joints = sorted(
+        ((place[one], side), (place[other], other_side))
+        for (one, side), (other, other_side) in walk.beside
+        if one in place
+    )
+    joined = {end for joint in joints for end in joint}
+    outer = [(index, side) for index in range(len(members)) for side in (0.0, 1.0) if (index, side) not in joined]
+    lanes = tuple(walk.lanes[index] for index in members)
+    if len(outer) != 2 or lanes[0].patch.closed(1 - lanes[0].axis):
+        return None
+    return Lanes(lanes=lanes, outer=tuple(outer), joints=tuple(joints))
+
+
+def _begun(columns: Sequence[Lanes]) -> tuple[Lanes, ...]:
     """The same ring begun where it comes first in space, and walked counterclockwise."""
-    line = np.concatenate([link.middles(np.linspace(0.0, 1.0, 33)[:-1]) for link in links])
+    line = np.concatenate([column.middles(np.linspace(0.0, 1.0, 33)[:-1]) for column in columns])
     about = cross(line - line.mean(axis=0), np.roll(line, -1, axis=0) - line.mean(axis=0)).sum(axis=0)
     if about[np.abs(about).argmax()] < 0.0:
-        links = [Link(lane=link.lane, forward=not link.forward) for link in reversed(links)]
-    joints = np.concatenate([link.middles(ENDS[:1]) for link in links])
+        columns = [column.turned() for column in reversed(columns)]
+    joints = np.concatenate([column.middles(ENDS[:1]) for column in columns])
     first = int(np.lexsort([levels(joints[:, axis], LEVEL) for axis in (2, 1, 0)])[0])
-    return (*links[first:], *links[:first])
+    return (*columns[first:], *columns[:first])

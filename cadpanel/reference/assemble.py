@@ -56,7 +56,7 @@ def assemble(
     refuse_duplicates(sheets, source, seam_tolerance)
     contacts = find_contacts(sheets, source, seam_tolerance)
     refuse_overlaps(sheets, source, seam_tolerance)
-    notes = unmet_notes(sheets, contacts, source, seam_tolerance)
+    notes = unmet_notes(sheets, contacts, source, seam_tolerance, junctions)
     flipped = outer_faces(sheets, contacts)
     sheets = [one.other_face() if flip else one for one, flip in zip(sheets, flipped, strict=True)]
     contacts = after_flipping(contacts, sheets, flipped)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.reference.contacts import SideContact
+from cadpanel.reference.polyline import unit
 from cadpanel.reference.sheet import Sheet
 
 Array = NDArray[np.float64]
@@ -125,7 +126,8 @@ def _leaning(sheet: Sheet) -> Array:
     lengths = np.array([side.length for side in sheet.sides])
     chords = np.array([side.points[-1] - side.points[0] for side in sheet.sides])
     ways = chords[:2] - chords[2:]
-    ways = np.abs(ways) / np.linalg.norm(ways, axis=1, keepdims=True)
+    # Both ends of half a ring point the same way, and one way has no direction.
+    ways = np.abs(unit(ways))
     bend = sheet.bend_of_pair(0) - sheet.bend_of_pair(1)
     return np.array([bend, (lengths[1::2].sum() - lengths[::2].sum()) / lengths.sum(), *(ways[1] - ways[0])])
 

@@ -31,14 +31,41 @@ class _Loop:
     """A panel's outline as one closed line.
 
     Attributes:
-        points: (l, 3) mm.
+        points: (l, 3) mm; side after side, each with as many.
         normals: (l, 3) of the panel there.
-        inwards: (l, 3) from each point into the panel, square to the outline; between both sides' at a corner.
+        steps: (l, 3) from each point to the next, mm.
+        inwards: (l, 3) from the line between each point and the next into the panel, square to it, of length 1.
+        sides: how many there are.
     """
 
     points: Array
     normals: Array
+    steps: Array
     inwards: Array
+    sides: int
+
+    def contains(self, points: Array) -> NDArray[np.bool_]:
+        """Tell for (m, 3) points beside the outline whether they lie on the panel's side of where they are nearest.
+
+        Where that is a point between two lines, both count alike: the sum of their ways inwards tells both at corners
+        that stand out and at such that stand back, if only no other point of the outline is nearer.
+        """
+        middle = self.points.mean(axis=0)
+        placed, own = points - middle, self.points - middle
+        squares = np.einsum("ld,ld->l", own, own) - 2.0 * placed @ own.T
+        # The points of a side are evenly spaced: of its lines one that ends in the nearest of them is the nearest.
+        each = squares.reshape(len(points), self.sides, -1)
+        nearest = each.argmin(axis=-1) + np.arange(self.sides) * each.shape[-1]
+        lines = np.concatenate([nearest - 1, nearest], axis=1) % len(own)
+        offsets = placed[:, None] - own[lines]
+        lengths = np.einsum("ld,ld->l", self.steps, self.steps)[lines]
+        parts = np.clip(np.einsum("mkd,mkd->mk", offsets, self.steps[lines]) / lengths, 0.0, 1.0)
+        away = offsets - parts[..., None] * self.steps[lines]
+        best = (np.arange(len(points)), np.einsum("mkd,mkd->mk", away, away).argmin(axis=1))
+        line, part = lines[best], parts[best]
+        beside = np.where(part <= 0.0, line - 1, np.where(part >= 1.0, line + 1, line)) % len(own)
+        ways = self.inwards[line] + self.inwards[beside]
+        return np.asarray(np.einsum("md,md->m", away[best], ways) > 0.0)
 
 
 def refuse_overlaps(sheets: Sequence[Sheet], source: str, tolerance: float) -> None:
@@ -86,8 +113,9 @@ def _loop(sheet: Sheet) -> _Loop:
         np.concatenate([array[:-1] for array in arrays])
         for arrays in ([side.points for side in sheet.sides], [side.normals for side in sheet.sides])
     )
-    steps = unit(np.roll(points, -1, axis=0) - points)
-    return _Loop(points=points, normals=normals, inwards=unit(cross(normals, steps + np.roll(steps, 1, axis=0))))
+    steps = np.roll(points, -1, axis=0) - points
+    inwards = unit(cross(normals + np.roll(normals, -1, axis=0), steps))
+    return _Loop(points=points, normals=normals, steps=steps, inwards=inwards, sides=len(sheet.sides))
 
 
 def _beside(index: int, sheet: Sheet, loop: _Loop, tree: cKDTree, owner: IntArray, tolerance: float) -> IntArray:
@@ -110,9 +138,11 @@ def _beside(index: int, sheet: Sheet, loop: _Loop, tree: cKDTree, owner: IntArra
 def _depths(sheet: Sheet, loop: _Loop, points: Array, normals: Array, tolerance: float) -> Array:
     """How far (m,) points inside a panel's outline lie from it, mm; 0 for those outside, or off the panel."""
     depths = np.zeros(len(points))
-    distance, nearest = (np.asarray(found) for found in cKDTree(loop.points).query(points))
-    inside = np.einsum("md,md->m", points - loop.points[nearest], loop.inwards[nearest]) > 0.0
-    left = np.flatnonzero(inside & (distance > tolerance))
+    # Most are points of edges that the two have in common.
+    apart = np.flatnonzero(np.asarray(cKDTree(loop.points).query(points)[0]) > tolerance)
+    if not len(apart):
+        return depths
+    left = apart[loop.contains(points[apart])]
     if not len(left):
         return depths
     cloud, turned = np.concatenate([loop.points, sheet.points]), np.concatenate([loop.normals, sheet.normals])

@@ -8,12 +8,16 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from cadpanel.reference.model import RawPanel, Turning
 from cadpanel.reference.outline import Outline, Side
-from cadpanel.reference.polyline import norm, unit
+from cadpanel.reference.polyline import cross, norm, unit
 
 Array = NDArray[np.float64]
+
+# Where the mean of a panel's normals is shorter than this, it winds round too far to have a side that faces a viewer.
+WOUND = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,11 +108,21 @@ def turning(sheet_: Sheet, first: int) -> Turning:
 
 
 def _runs_counterclockwise(of: Sheet) -> bool:
-    """Whether the loop encloses its area on the left, seen against the normals."""
+    """Whether the loop encloses its area on the left, seen against the normals.
+
+    The integral of a surface's normals is that of r x dr / 2 along its loop. Where a panel winds round so far that
+    nothing is left of either, the samples next to the loop tell on which side of it the panel lies.
+    """
     loop = np.concatenate([side.points[:-1] for side in of.sides])
     loop = loop - loop.mean(axis=0)
-    area = np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0)
-    return bool(area @ (of.weights @ of.normals) > 0.0)
+    facing = of.weights @ of.normals
+    if float(norm(facing)) > WOUND * float(of.weights.sum()):
+        return bool(np.cross(loop, np.roll(loop, -1, axis=0)).sum(axis=0) @ facing > 0.0)
+    normals = np.concatenate([side.normals[:-1] for side in of.sides])
+    points = np.concatenate([side.points[:-1] for side in of.sides])
+    _, nearest = cKDTree(of.points).query(points)
+    inwards = cross(normals, np.roll(loop, -1, axis=0) - loop)
+    return bool(np.einsum("ld,ld->", inwards, of.points[nearest] - points) > 0.0)
 
 
 def _spread(side: Side) -> float:

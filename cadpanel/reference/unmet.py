@@ -23,13 +23,15 @@ FAR_SHARE = 0.5
 # so many are looked at first.
 TOUCHING = 5
 ALONG = 33
+# A longer side has others along all of it where that many of its points touch them.
+ALL_ALONG = 60
 # A side that comes nearer to the other by more than this part of its own length does not run along it.
 SLANT = 0.5
 EVERY = 4
 
 
 def unmet_notes(
-    sheets: Sequence[Sheet], contacts: Sequence[SideContact], source: str, tolerance: float
+    sheets: Sequence[Sheet], contacts: Sequence[SideContact], source: str, tolerance: float, junctions: bool = False
 ) -> tuple[str, ...]:
     """What to say of sides that touch others along a part only, or run along others farther away than the tolerance.
 
@@ -38,6 +40,7 @@ def unmet_notes(
         contacts: the seams between them.
         source: the file's name.
         tolerance: how far sides that meet may lie apart, mm.
+        junctions: whether sides were parted at the corners of others already.
     """
     if len(sheets) < 2:
         return ()
@@ -48,32 +51,65 @@ def unmet_notes(
         return ()
     lines, owners = lines[free], owners[free]
     met = {contact.panels for contact in contacts}
-    pairs, far = _neighbours(lines, owners, tolerance)
-    panels = np.sort(owners[pairs, 0], axis=1).tolist()
-    unmet = np.array([(one, other) not in met for one, other in panels], dtype=np.bool_)
-    pairs, far = pairs[unmet], far[unmet]
+    neighbours, reaches = _neighbours(lines, owners, tolerance)
+    unmet = np.array(
+        [pair not in met for pair in map(tuple, np.sort(owners[neighbours, 0], axis=1).tolist())], np.bool_
+    )
+    pairs, far = neighbours[unmet], reaches[unmet]
     touching: list[tuple[str, str]] = []
-    apart: list[tuple[float, str, str]] = []
+    apart: list[tuple[float, int, int]] = []
     for start in range(0, len(pairs), CHUNK):
         chunk = pairs[start : start + CHUNK]
         distances = distances_to_curves(lines[chunk[:, 0]], lines[chunk[:, 1]])
         for (one, other), own, reach in zip(chunk.tolist(), distances, far[start:], strict=False):
-            first, second = sorted((sheets[int(owners[one, 0])].name, sheets[int(owners[other, 0])].name))
             if np.count_nonzero(own <= tolerance) >= TOUCHING:
-                touching.append((first, second))
+                touching.append(_named(sheets, *owners[[one, other], 0].tolist()))
             elif np.count_nonzero(own <= reach) >= ALONG and _is_level(own[own <= reach], lines[one]):
-                apart.append((float(np.median(own)), first, second))
-    return (*_touching_note(sorted(set(touching)), source), *_apart_note(sorted(apart), source, tolerance))
+                apart.append((float(np.median(own)), one, other))
+    sides = np.array([pair for _, *pair in apart], dtype=np.intp)
+    shares = _shares(lines, neighbours[np.isin(neighbours, sides).any(axis=1)], tolerance)
+    # Where a panel lies along a side, what is farther away lies behind that panel.
+    lonely = sorted(
+        (distance, *_named(sheets, *owners[[one, other], 0].tolist()))
+        for distance, one, other in apart
+        if shares[one] < ALONG and shares[other] < ALL_ALONG
+    )
+    return (*_touching_note(sorted(set(touching)), source, junctions), *_apart_note(lonely, source, tolerance))
 
 
-def _touching_note(pairs: Sequence[tuple[str, str]], source: str) -> tuple[str, ...]:
+def _shares(lines: Array, pairs: IntArray, tolerance: float) -> IntArray:
+    """(s,) how many points of each side touch any of the sides with which it is one of (c, 2) pairs."""
+    low, high = lines.min(axis=1) - tolerance, lines.max(axis=1)
+    one, other = pairs.T
+    pairs = pairs[((low[one] <= high[other]) & (low[other] <= high[one])).all(axis=1)]
+    touched = np.zeros(lines.shape[:2], dtype=np.bool_)
+    for one, other in (pairs.T, pairs.T[::-1]):
+        for start in range(0, len(pairs), CHUNK):
+            chunk = slice(start, start + CHUNK)
+            near = distances_to_curves(lines[one[chunk]], lines[other[chunk]]) <= tolerance
+            np.logical_or.at(touched, one[chunk], near)
+    return np.asarray(touched.sum(axis=1), dtype=np.intp)
+
+
+def _named(sheets: Sequence[Sheet], one: int, other: int) -> tuple[str, str]:
+    first, second = sorted((sheets[one].name, sheets[other].name))
+    return first, second
+
+
+def _touching_note(pairs: Sequence[tuple[str, str]], source: str, junctions: bool) -> tuple[str, ...]:
     if not pairs:
         return ()
     first, second = pairs[0]
     many = f"{len(pairs)} pairs of panels" if len(pairs) > 1 else "Two panels"
+    # See `part_sides`.
+    remedy = (
+        "a triangle with a single corner of others on its sides stays whole, so cut it in two there"
+        if junctions
+        else "or give --junctions and --feature planar-polygon"
+    )
     return (
         f"{many} of '{source}' touch along a part of an edge only, like '{first}' and '{second}': no seam is held "
-        "there; cut both sides at the same places, or give --junctions and --feature planar-polygon.",
+        f"there; cut both sides at the same places{';' if junctions else ','} {remedy}.",
     )
 
 

@@ -12,12 +12,12 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeTorus,
 )
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt
+from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.split import area_of
-from cadpanel.errors import CadpanelError, OutlineError, PanelError
+from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError
 from tests.brep.test_subdivide import reference_of
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
@@ -127,6 +127,23 @@ def test_stations_that_miss_the_surface_are_told_where_along_the_spine_it_lies(t
         reference_of(tmp_path, *strip_faces(STRAIGHT), stations=(station,), spine=line)
     halves = reference_of(tmp_path, *strip_faces(STRAIGHT), stations=(0.5 * (low + min(high, 49999.0)),), spine=line)
     assert len(halves.seams) == 1
+
+
+@pytest.mark.parametrize(
+    ("turn", "sentence"),
+    [
+        (360.0, "The spine in 'spine.brep' closes to a ring, on which no station is the first: leave a part of it out"),
+        (
+            355.0,
+            "Beyond the last cut of 3 there is nothing of the surface of faces 1, 2 and 3 of 'skin.brep': give",
+        ),
+    ],
+)
+def test_a_spine_that_goes_all_round_is_refused(tmp_path, turn, sentence):
+    circle = gp_Circ(gp_Ax2(gp_Pnt(4500.0, 0.0, -6000.0), gp_Dir(0.0, 1.0, 0.0)), 6000.0)
+    line = write_shape(tmp_path / "spine.brep", BRepBuilderAPI_MakeEdge(circle, 0.0, math.radians(turn)).Edge())
+    with pytest.raises(ReferenceFileError, match=sentence):
+        reference_of(tmp_path, *strip_faces(STRAIGHT), stations=(1000.0, 3000.0, 8000.0), spine=line)
 
 
 @pytest.mark.parametrize("face", [BALL, TUBE, TORUS])

@@ -1,11 +1,16 @@
 """Surfaces that close to a ring are divided round it, where a panel does not have to go round."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeTorus
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeRevol, BRepPrimAPI_MakeTorus
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Trsf
 from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
 
 from cadpanel.brep.model import shapes_of
 from cadpanel.brep.split import area_of
@@ -98,8 +103,58 @@ def test_what_a_panel_would_have_to_go_round_is_refused(solid, count, sentence):
     assert_covers(panels_of(model_of(side_of(solid)), grid=(4, 2)), [side_of(solid)])
 
 
-def test_a_ring_of_faces_both_ways_is_pointed_to_other_ways_to_cut():
-    faces = [kernel_face(surface, (k, k + 1.0), poles=20) for surface in ring(4) for k in (0.0, 1.0, 2.0)]
+def rows(*borders):
+    """Faces of a roof edge all round, in three rows that are parted at the same or at other places, as parts of a turn.
+
+    Args:
+        borders: for each row where its faces begin.
+    """
+    arc = gp_Circ(gp_Ax2(gp_Pnt(6000.0, 0.0, 300.0), gp_Dir(0.0, -1.0, 0.0)), 300.0)
+    profile = [
+        BRepBuilderAPI_MakeEdge(gp_Pnt(5000.0, 0.0, -300.0), gp_Pnt(6000.0, 0.0, 0.0)).Edge(),
+        BRepBuilderAPI_MakeEdge(arc, gp_Pnt(6000.0, 0.0, 0.0), gp_Pnt(6300.0, 0.0, 300.0)).Edge(),
+        BRepBuilderAPI_MakeEdge(gp_Pnt(6300.0, 0.0, 300.0), gp_Pnt(6300.0, 0.0, 900.0)).Edge(),
+    ]
+    axis = gp_Ax1(gp_Pnt(), gp_Dir(0.0, 0.0, 1.0))
+
+    def part(row, first, last):
+        turned = gp_Trsf()
+        turned.SetRotation(axis, 2.0 * np.pi * first)
+        edge = profile[row].Moved(TopLoc_Location(turned))
+        return shapes_of(BRepPrimAPI_MakeRevol(edge, axis, 2.0 * np.pi * (last - first)).Shape(), TopAbs_FACE)[0]
+
+    return [
+        part(row, first, last)
+        for row, starts in enumerate(borders)
+        for first, last in pairwise((*starts, 1.0 + starts[0]))
+    ]
+
+
+@pytest.mark.parametrize("starts", [(0.0,), (0.0, 0.5), (0.0, 0.1, 0.7), (0.2, 0.4, 0.6, 0.8)])
+@pytest.mark.parametrize("count", [2, 8])
+def test_a_ring_of_several_rows_is_divided_round_into_equal_panels(tmp_path, starts, count):
+    faces = rows(starts, starts, starts)
+    reference = reference_of(tmp_path, *faces, divide=count)
+    assert len(reference.seams) == count
+    areas = [panel.weights.sum() for panel in reference.panels]
+    np.testing.assert_allclose(areas, sum(map(area_of, faces)) / count, rtol=1e-3)
+    assert {len(panel.edges) for panel in reference.panels} == {4}
+
+
+@given(order=st.permutations(range(9)), flips=st.lists(st.booleans(), min_size=9, max_size=9))
+@settings(max_examples=6, deadline=None)
+def test_order_and_side_of_the_faces_of_rows_change_nothing(order, flips):
+    faces = rows(*[(0.0, 0.1, 0.7)] * 3)
+    turned = [faces[index].Reversed() if flips[index] else faces[index] for index in order]
+    for first, second in zip(
+        panels_of(model_of(*faces), divide=5), panels_of(model_of(*turned), divide=5), strict=True
+    ):
+        assert first.name == second.name
+        np.testing.assert_allclose(middle(first), middle(second), atol=1.0)
+
+
+def test_a_ring_of_rows_with_joints_of_their_own_is_pointed_to_other_ways_to_cut():
+    faces = rows((0.0, 0.3), (0.0, 0.4), (0.0, 0.3))
     with pytest.raises(
         ReferenceFileError,
         match=r"its outline has 2 loops .*: choose fewer faces, or cut it with a grid, a network of curves",

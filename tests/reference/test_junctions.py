@@ -91,3 +91,22 @@ def test_flat_bricks_on_a_vault_close():
     result = cp.fit(assemble(bond(), "bricks.step", junctions=True), feature="planar-polygon")
     assert result.tolerance_met
     assert result.measures.max_seam_gap < 0.1
+
+
+def test_a_triangle_with_a_single_junction_stays_whole_and_the_note_tells_what_helps():
+    flat = sheet_of(lambda x, _: 0.0 * x, 1.0, 1.0)
+    triangle = np.array([[0.0, 0.0], [4000.0, 0.0], [2000.0, 3000.0]])
+    below = [np.array([[x, -1000.0], [x + 2000.0, -1000.0], [x + 2000.0, 0.0], [x, 0.0]]) for x in (0.0, 2000.0)]
+    halves = [np.array([[0.0, 0.0], [2000.0, 0.0], [2000.0, 3000.0]]), np.array([[2000.0, 0.0], *triangle[1:]])]
+
+    def assembled(*parts):
+        panels = [RawPanel(name=f"P{n}", faces=(polygon_face(flat, part),)) for n, part in enumerate(parts)]
+        return assemble(panels, "gable.step", junctions=True)
+
+    whole = assembled(triangle, *below)
+    assert len(whole.seams) == 1
+    (note,) = whole.notes
+    assert note.endswith("a triangle with a single corner of others on its sides stays whole, so cut it in two there.")
+    parted = assembled(*halves, *below)
+    assert len(parted.seams) == 4
+    assert parted.notes == ()

@@ -5,7 +5,8 @@ from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.assemble import assemble
-from tests.reference_shapes import Lip, lens, moved, raw_panel, raw_strip, ring, shuffled, strip
+from cadpanel.reference.model import RawPanel
+from tests.reference_shapes import Lip, lens, moved, raw_panel, raw_strip, ring, sampled_face, shuffled, strip
 
 STRIP = raw_strip(strip(6))
 RINGS = {2: raw_strip(lens()), 3: raw_strip(ring(3)), 8: raw_strip(ring(8))}
@@ -73,6 +74,21 @@ def test_two_panels_that_lie_over_each_other_have_their_outer_faces_away_from_ea
         lower.points, axis=0, weights=lower.weights
     )
     assert apart @ (upper.weights @ upper.normals) > 0.0 > apart @ (lower.weights @ lower.normals)
+
+
+def test_halves_of_a_flat_ring_meet_at_their_short_ends():
+    """Both ends of a half point the same way, and the way across has no direction."""
+
+    def half(first):
+        def surface(u, v):
+            angle, radius = np.pi * (first + u), 1000.0 + 2000.0 * v
+            return np.stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * u * v], axis=-1)
+
+        return RawPanel(name=f"half {first}", faces=(sampled_face(surface, (0.0, 1.0)),))
+
+    with np.errstate(all="raise"):
+        reference = assemble([half(0), half(1)], "ring.step")
+    assert [set(seam.edges) for seam in reference.seams] == [{0, 1}] * 2
 
 
 def test_panels_that_do_not_touch_have_no_seam():

@@ -1,12 +1,14 @@
 """Sides that lie along others without a seam are told of, and panels that cover each other are refused."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
-from tests.reference_shapes import moved, raw_grid, raw_strip, ring, sampled_face, sheet_of, strip
+from tests.reference_shapes import moved, polygon_face, raw_grid, raw_strip, ring, sampled_face, sheet_of, strip
 
 ROOF = sheet_of(lambda x, y: 0.0 * (x + y), width=4000.0, length=4000.0)
 
@@ -60,6 +62,35 @@ def test_a_short_side_that_points_at_a_long_one_does_not_run_along_it():
     turned = np.array([[0.6, -0.8, 0.0], [0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     spike = moved(tile("B", 0.0, 0.0, 30.0, 30.0), turned, np.array([300.0, 904.0, 0.0]))
     assert notes(tile("A", 0.0, 0.0, 900.0, 900.0), spike) == ()
+
+
+@pytest.mark.parametrize("angle", [10.0, 20.0])
+def test_sides_that_a_panel_between_them_touches_do_not_run_along_each_other(angle):
+    """Small panels on either side of a long wedge's tip, whose sides lie on the wedge's."""
+    slope = np.tan(np.radians(0.5 * angle))
+    flat = sheet_of(lambda x, _: 0.0 * x, 1.0, 1.0)
+    xs = [0.0, 100.0, 200.0, 300.0, 400.0, 9000.0]
+    wedge = np.array([[0.0, 0.0], [9000.0, -9000.0 * slope], [9000.0, 9000.0 * slope]])
+    above = [
+        np.array([[first, slope * first], [last, slope * last], [last, 3000.0], [first, 3000.0]])
+        for first, last in pairwise(xs)
+    ]
+    below = [corners[::-1] * [1.0, -1.0] for corners in above]
+    parts = [
+        RawPanel(name=f"P{n}", faces=(polygon_face(flat, part),)) for n, part in enumerate([wedge, *above, *below])
+    ]
+    (note,) = notes(*parts)
+    assert note.startswith("10 pairs of panels of 'roof.step' touch along a part of an edge only")
+
+
+def test_a_frame_between_two_rows_of_panels_keeps_them_from_running_along_each_other():
+    frame = tile("frame", 0.0, 0.0, 9000.0, 100.0)
+    rows = [tile(f"{y}/{n}", 1000.0 * n, y, 1000.0) for y in (-1000.0, 100.0) for n in range(9)]
+    (note,) = notes(frame, *rows)
+    assert note.startswith("18 pairs of panels")
+    gap = tile("gap", 0.0, 1101.5, 9000.0, 100.0)
+    told = notes(frame, *rows, gap)
+    assert "9 pairs of panels of 'roof.step' run along each other farther apart" in told[1]
 
 
 def test_corners_that_meet_are_no_sides_that_do():

@@ -33,8 +33,8 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
     """Cut a strip where the mean length of its two long edges has equal parts.
 
     Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean,
-    as are faces that follow each other round a ring, no wider than it is long. All others are cut by planes through the
-    two long edges, square to the strip.
+    as are faces that follow each other round a ring, no wider than it is long, in rows with common joints. All others
+    are cut by planes through the two long edges, square to the strip.
 
     Args:
         surface: what to cut.

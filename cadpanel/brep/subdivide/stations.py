@@ -17,12 +17,14 @@ from cadpanel.brep.strip import MIDDLE_POINTS, STEP, Cuts, find_strip
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.assemble import LARGEST_TOLERANCE
-from cadpanel.reference.polyline import arc_length, interpolate, unit
+from cadpanel.reference.polyline import arc_length, interpolate, norm, unit
 
 Array = NDArray[np.float64]
 
 # How far beyond the surface's farthest point from the spine a plane reaches, a ratio.
 BEYOND = 1.05
+# A spine whose ends are as close as this part of its length closes to a ring.
+CLOSED = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,12 +39,18 @@ def spine_of(file: CurveFile) -> Spine:
     """The spine that the curves of a file make.
 
     Raises:
-        ReferenceFileError: they do not follow each other.
+        ReferenceFileError: they do not follow each other, or until they are back at the first: a length along them
+            would have no beginning.
     """
     line = chain([curve.points for curve in file.curves])
     if line is None:
         raise ReferenceFileError(
             f"'{file.source}' holds {len(file.curves)} curves that do not follow each other: a spine is one line."
+        )
+    if norm(line[-1] - line[0]) <= CLOSED * arc_length(line)[-1]:
+        raise ReferenceFileError(
+            f"The spine in '{file.source}' closes to a ring, on which no station is the first: leave a part of it out "
+            "that lies off the surface, or cut the surface with a network of curves."
         )
     return Spine(line=line, source=file.source)
 

@@ -16,6 +16,7 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.feet import Search
 from cadpanel.brep.lay import Stretch, lay
 from cadpanel.brep.loops import uncrossed
+from cadpanel.brep.nearness import reach_of
 from cadpanel.brep.runs import kept_on_face, runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
 from cadpanel.brep.trimmed import Trim
@@ -24,9 +25,6 @@ from cadpanel.reference.polyline import unit
 
 Array = NDArray[np.float64]
 
-# A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
-NEAR_PART = 0.01
-NEAR = 10.0
 # A curve lies nearer to another face mostly where that holds for more than this part of its points.
 MOSTLY = 0.5
 # A curve goes on from another one where it turns by less than an angle with this cosine.
@@ -86,7 +84,7 @@ def land_curves(
         ReferenceFileError: a curve cannot be followed on a face.
     """
     pieces = _continued([(index, piece) for index, curve in enumerate(curves) for piece in curve.pieces])
-    reaches = [max(NEAR, NEAR_PART * surface.size) for surface in surfaces]
+    reaches = [reach_of(surface) for surface in surfaces]
     return _landings(surfaces, reaches, pieces, [f"{curve.called} of '{curve_source}'" for curve in curves], tolerance)
 
 
@@ -150,19 +148,21 @@ def _over(
     """The stretches over each face; a face comes with the place of its surface's reach."""
     points = np.concatenate([piece.points for _, piece in pieces])
     starts = np.cumsum([0, *(len(piece.points) for _, piece in pieces)]).tolist()
+    sags = np.concatenate([np.broadcast_to(piece.sags, len(piece.points)) for _, piece in pieces])
     nearest = np.full(len(points), np.inf)
     found = []
     for place, face in faces:
         search = Search(face.patch)
         feet = search.feet(points)
-        inside = np.asarray(feet.distances <= reaches[place], dtype=np.bool_)
+        near = np.asarray(feet.distances <= reaches[place] + sags, dtype=np.bool_)
+        inside = near.copy()
         trim = None if face.patch.whole else Trim(face.patch)
         if trim is not None:
             inside[inside] = trim.encloses(feet.parameters[inside])
         nearest = np.minimum(nearest, np.where(inside, feet.distances, np.inf))
         runs = []
         for (index, piece), start, stop in zip(pieces, starts[:-1], starts[1:], strict=True):
-            runs += runs_over(search.patch, index, piece, feet.part(start, stop), start, reaches[place], tolerance)
+            runs += runs_over(search.patch, index, piece, feet.part(start, stop), start, near[start:stop], tolerance)
         if trim is not None:
             runs = kept_on_face(runs, trim, inside, tolerance)
         stretches = []

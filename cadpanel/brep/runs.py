@@ -58,14 +58,13 @@ class Run:
 
 
 def runs_over(
-    patch: Patch, index: int, piece: Piece, feet: Feet, start: int, reach: float, tolerance: float
+    patch: Patch, index: int, piece: Piece, feet: Feet, start: int, near: NDArray[np.bool_], tolerance: float
 ) -> list[Run]:
-    """The runs of a piece's points over a patch, and those along its border.
+    """The runs of those of a piece's points that are near a patch over it, and those along its border.
 
     Points belong to the border that lie beside it by no more than the tolerance, however far above: a curve over the
     joint of two faces has no feet inside either.
     """
-    near = feet.distances <= reach
     inside = near & ~feet.by_border
     beside = near & feet.by_border & (feet.asides <= tolerance)
     return [

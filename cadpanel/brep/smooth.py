@@ -49,6 +49,8 @@ class Piece:
         points: (q, 3) there, mm.
         own_ends: whether its first and its last point are the curve's own ends, and not a sharp turn or a join.
         beside: how far it runs beside the polyline that was drawn and stands for it, at most, mm.
+        sags: (q,) by how much farther off a surface than a curve's its points may lie, where it is a chord of it, mm;
+            one number where it is the same for all.
     """
 
     at: Callable[[Array], Array]
@@ -56,6 +58,7 @@ class Piece:
     points: Array
     own_ends: tuple[bool, bool] = (True, True)
     beside: float = 0.0
+    sags: Array | float = 0.0
 
 
 def smooth_pieces(edge: TopoDS_Edge) -> tuple[Piece, ...]:

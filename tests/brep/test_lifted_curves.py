@@ -123,3 +123,25 @@ def test_mesh_cuts_a_dome_of_two_faces_as_it_cuts_one_of_one(tmp_path, columns):
         found.append(panel_areas(read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=mesh))))
     assert len(found[0]) == 2 * columns
     assert found[1] == pytest.approx(found[0], rel=1e-4)
+
+
+def arch(rise):
+    """The dome's shape with another rise."""
+    return lambda u, v: dome(u, v) * np.array([1.0, 1.0, rise / RISE])
+
+
+@pytest.mark.parametrize("rise", [100.0, 500.0, 1000.0])
+@pytest.mark.parametrize(("columns", "rows"), [(3, 2), (4, 3)])
+def test_coarse_mesh_cuts_a_roof_that_bends_well_between_its_corners(tmp_path, columns, rows, rise):
+    surface = arch(rise)
+    skin = write_shape(tmp_path / "skin.brep", kernel_face(surface, (0.0, 1.0)))
+    mesh = mesh_file(tmp_path / "mesh.obj", columns, rows, surface)
+    found = read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=mesh))
+    assert len(found.panels) == columns * rows
+
+
+def test_mesh_that_lies_off_the_surface_is_refused_with_how_far(tmp_path):
+    skin = write_shape(tmp_path / "skin.brep", kernel_face(dome, (0.0, 1.0)))
+    mesh = mesh_file(tmp_path / "mesh.obj", 4, 2, lambda u, v: dome(u, v) + np.array([0.0, 0.0, 200.0]))
+    with pytest.raises(ReferenceFileError, match=r"Corner \d+ of the mesh 'mesh.obj' lies 200 mm off 'skin.brep': lay"):
+        read_raw_panels(skin, ReferenceSettings(unit="mm", mesh=mesh))

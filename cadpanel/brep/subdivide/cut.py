@@ -15,7 +15,7 @@ from cadpanel.brep.project import land_curves
 from cadpanel.brep.strip import CUT_OTHERWISE
 from cadpanel.brep.subdivide.grid import cut_grid
 from cadpanel.brep.subdivide.lengths import cut_lengths, cut_lip
-from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels
+from cadpanel.brep.subdivide.mesh import LAY_OVER, load_mesh, require_all_panels, require_near
 from cadpanel.brep.subdivide.network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.subdivide.panel import CutPanel
 from cadpanel.brep.subdivide.seam import opened
@@ -116,6 +116,7 @@ def _mesh(skin: _Skin) -> Cut:
     file = skin.settings.mesh or skin.file
     origin = np.array(skin.model.origin)
     mesh = load_mesh(file, origin, skin.settings.millimetres, skin.settings.seam_tolerance)
+    require_near(mesh, skin.surfaces, file.name, skin.model.source)
     cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER, mesh.notes)
     require_all_panels(mesh, cut.panels, file.name, skin.model.source)
     return cut

@@ -15,9 +15,11 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from scipy.spatial import cKDTree
 
 from cadpanel.brep import kernel
+from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
+from cadpanel.brep.nearness import far_off, sags
 from cadpanel.brep.smooth import Piece
 from cadpanel.brep.subdivide.hanging import parted
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
@@ -74,7 +76,10 @@ class Mesh:
             start = first - way if edge[0] in on_border else first
             stop = last + way if edge[1] in on_border else last
             along = partial(_along, start, stop)
-            piece = Piece(at=along, parameters=PARTS, points=along(PARTS))
+            points = along(PARTS)
+            length = float(np.linalg.norm(last - first))
+            parts = (points - first) @ (last - first) / length**2
+            piece = Piece(at=along, parameters=PARTS, points=points, sags=sags(parts, length))
             found.append(
                 _Edge(
                     number=len(found) + 1,
@@ -85,6 +90,12 @@ class Mesh:
                 )
             )
         return tuple(found)
+
+    def inner_corners(self) -> list[int]:
+        """Those that faces surround."""
+        uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
+        on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
+        return sorted({corner for edge in uses for corner in edge} - on_border)
 
     def middles(self) -> Array:
         """(m, 3) means of the faces' corners."""
@@ -125,6 +136,21 @@ def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: f
     if edges:
         notes.append(f"{edges} edges of '{path.name}' are parted where corners of other faces lie on them.")
     return Mesh(corners=points, faces=shared, notes=tuple(notes))
+
+
+def require_near(mesh: Mesh, surfaces: Sequence[Surface], mesh_source: str, source: str) -> None:
+    """Refuse a mesh that does not lie on the surfaces; the corners of its border may lie beyond their outlines.
+
+    Raises:
+        ReferenceFileError: one of its other corners is far off.
+    """
+    inner = mesh.inner_corners()
+    found = far_off(surfaces, mesh.corners[inner]) if inner else None
+    if found is not None:
+        place, distance = found
+        raise ReferenceFileError(
+            f"Corner {inner[place] + 1} of the mesh '{mesh_source}' lies {distance:.4g} mm off '{source}': {LAY_OVER}."
+        )
 
 
 def require_all_panels(mesh: Mesh, panels: Sequence[CutPanel], mesh_source: str, source: str) -> None:

@@ -219,6 +219,20 @@ def test_curve_that_runs_on_beyond_the_joint_of_two_faces_parts_them(tmp_path):
     assert len(raw(tmp_path, compound_of(halves), [joint]).panels) == 2
 
 
+@pytest.mark.parametrize(
+    ("places", "panels"), [((0.3,), 1), ((LENGTH - 0.3, 0.5 * LENGTH), 2), ((500.0, 500.3), 2)], ids=str
+)
+def test_curve_that_runs_close_beside_another_one_or_the_outline_reaches_it(tmp_path, places, panels):
+    found = raw(tmp_path, plate(), [line((x, 0, 0), (x, WIDTH, 0)) for x in places]).panels
+    assert len(found) == panels
+    assert sum(face.weights.sum() for panel in found for face in panel.faces) == pytest.approx(LENGTH * WIDTH)
+
+
+def test_curve_that_leaves_a_sliver_is_named(tmp_path):
+    with pytest.raises(ReferenceFileError, match=r"Curve \d of 'lines.brep' leaves a panel only 0.8 mm wide near"):
+        raw(tmp_path, plate(), [line((x, 0, 0), (x, WIDTH, 0)) for x in (500.0, 500.8)])
+
+
 def test_curve_that_cannot_be_followed_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(lay, "ROUNDS", 0)
     skin = write_shape(tmp_path / "skin.brep", plate())

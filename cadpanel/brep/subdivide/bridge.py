@@ -31,7 +31,7 @@ def bridges(edges: Sequence[TopoDS_Edge], faces: Sequence[int], tolerance: float
     """
     if len(set(faces)) < 2:
         return []
-    lines = np.array([_points(edge) for edge in edges])
+    lines = np.array([points_along(edge) for edge in edges])
     reached = arc_length(lines)
     lengths = reached[:, -1]
     middles = np.array(
@@ -58,7 +58,8 @@ def _along(lines: Array, tolerance: float) -> bool:
     return bool(min(np.mean(there), np.mean(back)) >= ALONG and norm(np.ptp(lines[0], axis=0)) > tolerance)
 
 
-def _points(edge: TopoDS_Edge) -> Array:
+def points_along(edge: TopoDS_Edge) -> Array:
+    """(POINTS, 3) points along an edge, mm."""
     curve = BRepAdaptor_Curve(edge)
     places = np.linspace(curve.FirstParameter(), curve.LastParameter(), POINTS)
     return np.array([curve.Value(place).Coord() for place in places.tolist()])

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_INTERNAL
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_INTERNAL, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -19,12 +19,13 @@ from cadpanel.brep.connect import Surface
 from cadpanel.brep.curves import Curve
 from cadpanel.brep.model import shapes_of
 from cadpanel.brep.project import Landing
-from cadpanel.brep.split import Pieces, length_of
+from cadpanel.brep.split import Pieces, area_of, length_of
 from cadpanel.brep.split_edges import split_along
-from cadpanel.brep.subdivide.bridge import bridges
+from cadpanel.brep.subdivide.bridge import bridges, points_along
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.subdivide.places import Link, place_names
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.polyline import cross, norm
 
 Array = NDArray[np.float64]
 
@@ -43,11 +44,14 @@ class _Cut:
         links: pairs of pieces that share an edge, or lie along each other's within the tolerance, with that edge, and
             whether a curve made it.
         loose: the parts of curves that separate nothing: the curve's index, and the edge.
+        slivers: pieces that a curve leaves narrower than the tolerance: the curve's index, an edge of it there, and the
+            width, mm.
     """
 
     faces: tuple[TopoDS_Face, ...]
     links: tuple[tuple[int, int, TopoDS_Edge, bool], ...]
     loose: tuple[tuple[int, TopoDS_Edge], ...]
+    slivers: tuple[tuple[int, TopoDS_Edge, float], ...]
 
 
 def cut_network(
@@ -74,7 +78,7 @@ def cut_network(
         tolerance: how far a curve may end from where it should, mm.
 
     Raises:
-        ReferenceFileError: a curve ends inside a panel, or the kernel does not cut along it.
+        ReferenceFileError: a curve ends inside a panel, leaves a sliver, or the kernel does not cut along it.
     """
     if not any(landing.edges):
         return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
@@ -87,11 +91,19 @@ def cut_network(
             f"{called[:1].upper()}{called[1:]} of '{curve_source}' separates no two panels near ({x:.1f}, {y:.1f}, "
             f"{z:.1f}): {remedy}."
         )
+    if cut.slivers:
+        index, edge, width = cut.slivers[0]
+        x, y, z = _middle(edge)
+        called = curves[index].called
+        raise ReferenceFileError(
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' leaves a panel only {width:.2g} mm wide near "
+            f"({x:.1f}, {y:.1f}, {z:.1f}): draw it onto the edge that it runs beside, or take it out."
+        )
     return _panels(surface.name, cut)
 
 
 def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, tolerance: float) -> _Cut:
-    """Split with growing tolerance until every part of every curve separates two pieces or lies on the outline.
+    """Split with growing tolerance until every part of every curve separates two panels or lies on the outline.
 
     Ends that stick out beyond another curve by no more than the tolerance are taken off.
     """
@@ -105,7 +117,7 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
             kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
             pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept, tolerance)
-        if not cut.loose:
+        if not (cut.loose or cut.slivers):
             break
     assert cut is not None
     return cut
@@ -139,11 +151,11 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolera
                 inner.add(edge)
             if BRep_Tool.Degenerated_s(TopoDS.Edge_s(shape)):
                 degenerate.add(edge)
-    curve_edges: set[int] = set()
+    curve_edges: dict[int, int] = {}
     loose: list[tuple[int, TopoDS_Edge]] = []
     for (index, _), parts in zip(owners, pieces.tools, strict=True):
         for part in parts:
-            curve_edges.add(hash(part))
+            curve_edges[hash(part)] = index
             users = around.get(hash(part), [])
             # Twice in one piece: the piece lies on both sides. In no piece: the kernel left the curve out.
             if not users or hash(part) in inner or (len(users) == 2 and users[0] == users[1]):
@@ -159,7 +171,35 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolera
     for one, other in ((open_edges[first], open_edges[second]) for first, second in between):
         made = one in curve_edges or other in curve_edges
         links.append((around[one][0], around[other][0], edges[one], made))
-    return _Cut(faces=faces, links=tuple(links), loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))))
+    return _Cut(
+        faces=faces,
+        links=tuple(links),
+        loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))),
+        slivers=tuple(_slivers(faces, curve_edges, tolerance)),
+    )
+
+
+def _slivers(
+    faces: Sequence[TopoDS_Face], curve_edges: dict[int, int], tolerance: float
+) -> Iterator[tuple[int, TopoDS_Edge, float]]:
+    """The pieces narrower than the tolerance that a curve borders."""
+    for face in faces:
+        edges = [TopoDS.Edge_s(shape) for shape in shapes_of(face, TopAbs_EDGE)]
+        drawn = [edge for edge in edges if hash(edge) in curve_edges]
+        if not drawn:
+            continue
+        area, around = np.zeros(3), 0.0
+        origin = points_along(edges[0])[0]
+        for edge in edges:
+            points = points_along(edge) - origin
+            points = points[::-1] if edge.Orientation() == TopAbs_REVERSED else points
+            area += 0.5 * cross(points[:-1], points[1:]).sum(axis=0)
+            around += float(norm(np.diff(points, axis=0)).sum())
+        # Of a strip that is the width; what closes to a tube, or nearly so, encloses little of any plane.
+        width = 2.0 * float(norm(area)) / around
+        if width < tolerance and area_of(face) < 0.5 * tolerance * around:
+            longest = max(drawn, key=length_of)
+            yield curve_edges[hash(longest)], longest, width
 
 
 def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:

@@ -18,7 +18,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 from cadpanel.brep.formats.format import Format, check_nothing
 from cadpanel.brep.formats.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
 from cadpanel.brep.formats.rhino_objects import RhinoFile, RhinoObject, placed_objects, put
-from cadpanel.brep.formats.units import scaled
+from cadpanel.brep.formats.units import scaled, unit_taken
 from cadpanel.brep.model import Label, Model, Part, shapes_of
 from cadpanel.brep.trims import sharpen_trims
 from cadpanel.errors import ReferenceFileError
@@ -96,7 +96,7 @@ def _unit(name: str, file: RhinoFile, millimetres: float | None) -> tuple[str, f
         raise ReferenceFileError(
             f"'{name}' has no unit that can be converted (it says '{word}'): give one, or set one in Rhino."
         )
-    return f"none, read as {millimetres:g} mm", millimetres, False
+    return unit_taken(millimetres), millimetres, False
 
 
 def _shape(rhino: Any, geometry: RhinoObject) -> TopoDS_Shape | None:

@@ -12,7 +12,7 @@ from OCP.BRepBndLib import BRepBndLib
 from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.formats.catalogue import checked_format_of
-from cadpanel.brep.formats.units import shifted
+from cadpanel.brep.formats.units import refuse_given, shifted
 from cadpanel.brep.guard import read_guarded
 from cadpanel.brep.model import Model, compound_of
 from cadpanel.brep.reading import PackedModel
@@ -43,10 +43,7 @@ def load_model(
     checked_format_of(path)
     model = cast(PackedModel, read_guarded("model", path, millimetres)).unpack()
     if millimetres is not None and model.own_unit and not beside_unitless:
-        raise ReferenceFileError(
-            f"'{path.name}' says itself that its unit is the {model.unit}: leave the unit out, or correct it in the "
-            "export."
-        )
+        raise refuse_given(path.name, model.unit)
     if not model.parts:
         raise ReferenceFileError(
             f"'{path.name}' holds neither faces nor curves: export the faces of the skin and try again."

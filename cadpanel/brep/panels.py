@@ -17,7 +17,7 @@ from cadpanel.brep.clean import skin_faces
 from cadpanel.brep.connect import surfaces_of
 from cadpanel.brep.formats.catalogue import checked_format_of
 from cadpanel.brep.formats.step import STEP
-from cadpanel.brep.formats.units import shifted
+from cadpanel.brep.formats.units import refuse_given, shifted, unit_missing
 from cadpanel.brep.guard import read_guarded
 from cadpanel.brep.loading import far_origin, load_model, origin_note
 from cadpanel.brep.mend import mend_panels
@@ -61,7 +61,7 @@ def raw_panels(path: Path, how: ReferenceSettings) -> RawReference:
     if how.way is not None:
         return _cut_panels(path, how)
     if has_products(path, how):
-        return _product_panels(path, how.seam_tolerance)
+        return _product_panels(path, how)
     return _part_panels(load_model(path, how.millimetres), how)
 
 
@@ -71,18 +71,23 @@ def has_products(path: Path, how: ReferenceSettings) -> bool:
     Raises:
         ReferenceFileError: there is no such file, or it has no format that is known.
     """
-    return how.way is None and how.faces is None and how.unit is None and checked_format_of(path) is STEP
+    return how.way is None and how.faces is None and checked_format_of(path) is STEP
 
 
-def _product_panels(path: Path, tolerance: float) -> RawReference:
+def _product_panels(path: Path, how: ReferenceSettings) -> RawReference:
     """The products of a STEP file as panels."""
-    products = cast(PackedProducts, read_guarded("products", path, None)).unpack()
+    found = cast(PackedProducts, read_guarded("products", path, how.millimetres)).unpack()
+    if found.unit is not None and how.millimetres is not None:
+        raise refuse_given(path.name, found.unit)
+    notes = [unit_missing(path.name)] if found.unit is None and how.millimetres is None else []
+    products = found.shapes
     origin = far_origin([product.shape for product in products], path.name)
     if origin is not None:
         back = (-origin[0], -origin[1], -origin[2])
         products = tuple(replace(product, shape=shifted(product.shape, back)) for product in products)
-    panels, mended = _mended(products, path.name, tolerance)
-    return RawReference(panels=panels, notes=(*(() if origin is None else (origin_note(path.name, origin),)), *mended))
+        notes.append(origin_note(path.name, origin))
+    panels, mended = _mended(products, path.name, how.seam_tolerance)
+    return RawReference(panels=panels, notes=(*notes, *mended))
 
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:

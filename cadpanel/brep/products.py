@@ -16,6 +16,7 @@ from OCP.Interface import Interface_Check
 from OCP.Standard import Standard_Failure
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
+from OCP.TColStd import TColStd_SequenceOfAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -26,6 +27,7 @@ from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cadpanel.brep.formats.units import scaled
 from cadpanel.brep.instance_check import damage
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.errors import ReferenceFileError
@@ -53,11 +55,28 @@ class NamedShape:
     shape: TopoDS_Shape
 
 
-def read_products(path: Path) -> tuple[NamedShape, ...]:
-    """Return the file's panels as placed shapes, in file order, lengths in mm.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Products:
+    """The panels of a file.
+
+    Attributes:
+        shapes: placed, in file order, mm.
+        unit: the file's unit of length in its own words; None where it says none.
+    """
+
+    shapes: tuple[NamedShape, ...]
+    unit: str | None
+
+
+def read_products(path: Path, millimetres: float | None = None) -> Products:
+    """Return the file's panels.
 
     A panel is called by its product. Where several panels are one product in different places, they are called by their
     instances.
+
+    Args:
+        path: the file.
+        millimetres: how many the unit has, where the file says none; None for one.
 
     Raises:
         ReferenceFileError: the kernel cannot read the file, or only a part of it.
@@ -91,10 +110,17 @@ def read_products(path: Path) -> tuple[NamedShape, ...]:
     if len(products) == 1:
         products = _split(products[0])
     uses = Counter(product.name for product in products)
-    return tuple(
-        replace(product, name=product.instance or product.name) if uses[product.name] > 1 else product
+    unit = file_unit(reader)
+    factor = millimetres or 1.0 if unit is None else 1.0
+    shapes = tuple(
+        replace(
+            product,
+            name=(product.instance if uses[product.name] > 1 else "") or product.name,
+            shape=scaled(product.shape, factor),
+        )
         for product in products
     )
+    return Products(shapes=shapes, unit=unit)
 
 
 def transfer(path: Path, document: TDocStd_Document, reader: STEPCAFControl_Reader) -> None:
@@ -118,6 +144,14 @@ def transfer(path: Path, document: TDocStd_Document, reader: STEPCAFControl_Read
                 "repair it and export the reference again."
             )
         checks.Next()
+
+
+def file_unit(reader: STEPCAFControl_Reader) -> str | None:
+    """The units of length of a file that is read, in its own words; None where it says none."""
+    lengths, angles, solid_angles = (TColStd_SequenceOfAsciiString() for _ in range(3))
+    reader.Reader().FileUnits(lengths, angles, solid_angles)
+    words = {str(lengths.Value(index).ToCString()).lower() for index in range(1, lengths.Length() + 1)}
+    return " and ".join(sorted(words)) or None
 
 
 def _first_fail(check: Interface_Check) -> str:

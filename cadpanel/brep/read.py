@@ -53,5 +53,5 @@ def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None)
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
     checked_format_of(path)
-    held = Held("products", path) if has_products(path, how) else Held("model", path, how.millimetres)
+    held = Held("products" if has_products(path, how) else "model", path, how.millimetres)
     return cast(RawReference, work_guarded("panels", path, how, held))

@@ -19,7 +19,7 @@ from cadpanel.brep.formats.catalogue import format_of
 from cadpanel.brep.formats.step import STEP
 from cadpanel.brep.guard import HEADER, WORKED_ON, Request, Task, Work, read_here
 from cadpanel.brep.model import Model, children, compound_of, packed, shapes_of, unpacked
-from cadpanel.brep.products import NamedShape, read_products
+from cadpanel.brep.products import NamedShape, Products, read_products
 from cadpanel.brep.sampling import sample_faces
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
@@ -41,15 +41,16 @@ class PackedModel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PackedProducts:
-    """Named shapes on their way between interpreters."""
+    """Named shapes on their way between interpreters, and the unit that their file says."""
 
     names: tuple[tuple[str, str], ...]
+    unit: str | None
     shapes: bytes
 
-    def unpack(self) -> tuple[NamedShape, ...]:
+    def unpack(self) -> Products:
         """The shapes again."""
-        shapes = children(unpacked(self.shapes))
-        return tuple(NamedShape(*names, shape) for names, shape in zip(self.names, shapes, strict=True))
+        shapes = zip(self.names, children(unpacked(self.shapes)), strict=True)
+        return Products(shapes=tuple(NamedShape(*names, shape) for names, shape in shapes), unit=self.unit)
 
 
 def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:
@@ -59,9 +60,10 @@ def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | Pac
         ReferenceFileError: the kernel cannot read it.
     """
     if task == "products":
-        products = read_products(path)
-        names = tuple((product.name, product.instance) for product in products)
-        return PackedProducts(names=names, shapes=packed(compound_of(product.shape for product in products)))
+        products = read_products(path, millimetres)
+        names = tuple((product.name, product.instance) for product in products.shapes)
+        shapes = packed(compound_of(product.shape for product in products.shapes))
+        return PackedProducts(names=names, unit=products.unit, shapes=shapes)
     form = format_of(path)
     model = form.read(path, millimetres)
     if form is not STEP:

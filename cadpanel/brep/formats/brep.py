@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_COMPSOLID, TopAbs_FACE, TopAbs_SH
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.formats.format import Format
-from cadpanel.brep.formats.units import no_unit, scaled
+from cadpanel.brep.formats.units import no_unit, scaled, unit_taken
 from cadpanel.brep.model import Label, Model, Part, children, shapes_of
 from cadpanel.errors import ReferenceFileError
 
@@ -53,7 +53,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
             f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and write it again."
         ) from error
     notes = () if millimetres else (no_unit(path.name, ".brep"),)
-    unit = "none, read as millimetres" if millimetres is None else f"none, read as {millimetres:g} mm"
+    unit = unit_taken(millimetres)
     parts = tuple(
         Part(label=Label(), shape=part, face_labels=(Label(),) * len(shapes_of(part, TopAbs_FACE)))
         for part in _parts(shape)

@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -19,14 +17,13 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cadpanel.brep.formats.format import Format, check_nothing
 from cadpanel.brep.formats.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
-from cadpanel.brep.formats.units import scaled
+from cadpanel.brep.formats.rhino_objects import RhinoFile, RhinoObject, placed_objects, put
+from cadpanel.brep.formats.units import scaled, unit_taken
 from cadpanel.brep.model import Label, Model, Part, shapes_of
 from cadpanel.brep.trims import sharpen_trims
 from cadpanel.errors import ReferenceFileError
 
 MAGIC = re.compile(rb"\s*3D Geometry File Format")
-# Blocks may hold blocks; a file in which they go deeper than this holds itself.
-DEEPEST_BLOCK = 32
 # The units that Rhino knows, by its names for them: what they are called here, and how many mm they have.
 UNITS = {
     "Microns": ("micrometre", 1e-3),
@@ -42,20 +39,6 @@ UNITS = {
     "Feet": ("foot", 304.8),
     "Yards": ("yard", 914.4),
 }
-# What rhino3dm gives is untyped; each of these is one of its objects.
-RhinoFile = Any
-RhinoObject = Any
-Transform = Any
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Placed:
-    """An object's geometry where it stands, and what the file says of it; whether Rhino could put it there."""
-
-    geometry: RhinoObject
-    stands: bool
-    label: Label
-    place: int
 
 
 def _read(path: Path, millimetres: float | None) -> Model:
@@ -66,11 +49,11 @@ def _read(path: Path, millimetres: float | None) -> Model:
     unit, factor, own = _unit(path.name, file, millimetres)
     parts: list[Part] = []
     left_out: Counter[str] = Counter()
-    for placed in _objects(path.name, file, left_out):
+    for placed in placed_objects(path.name, file, left_out):
         try:
             shape = _shape(rhino, placed.geometry)
-            if shape is not None and not placed.stands:
-                raise ConversionError("it cannot be placed as its block says, flattened or with a number that is none")
+            if shape is not None and placed.matrix is not None:
+                shape = put(shape, placed.matrix)
         except (ConversionError, Standard_Failure) as error:
             raise ReferenceFileError(
                 f"'{path.name}' holds an object that cannot be read (number {placed.place}"
@@ -113,68 +96,7 @@ def _unit(name: str, file: RhinoFile, millimetres: float | None) -> tuple[str, f
         raise ReferenceFileError(
             f"'{name}' has no unit that can be converted (it says '{word}'): give one, or set one in Rhino."
         )
-    return f"none, read as {millimetres:g} mm", millimetres, False
-
-
-def _objects(name: str, file: RhinoFile, left_out: Counter[str]) -> Iterator[_Placed]:
-    """The visible objects outside blocks and those of placed blocks, in file order."""
-    by_id = {str(thing.Attributes.Id): thing for thing in file.Objects}
-    for place, thing in enumerate(file.Objects, start=1):
-        if thing.Attributes.IsInstanceDefinitionObject:
-            continue
-        yield from _expand(name, file, by_id, thing, place, left_out, ())
-
-
-def _expand(
-    name: str,
-    file: RhinoFile,
-    by_id: dict[str, RhinoObject],
-    thing: RhinoObject,
-    place: int,
-    left_out: Counter[str],
-    transforms: tuple[Transform, ...],
-) -> Iterator[_Placed]:
-    """One object, or those of the block that it places."""
-    label, hidden = _label(file, thing)
-    if hidden:
-        left_out["hidden object"] += 1
-        return
-    if len(transforms) > DEEPEST_BLOCK:
-        raise ReferenceFileError(f"'{name}' holds a block that holds itself: explode it in Rhino and save again.")
-    geometry = thing.Geometry
-    if geometry is None:
-        left_out["object without geometry"] += 1
-        return
-    if type(geometry).__name__ != "InstanceReference":
-        if transforms:
-            geometry = geometry.Duplicate()
-        # Of a perspective Rhino makes nothing of use, and says so for some objects only.
-        stands = all(transform.IsAffine and geometry.Transform(transform) for transform in reversed(transforms))
-        yield _Placed(geometry=geometry, stands=stands, label=label, place=place)
-        return
-    definition = file.InstanceDefinitions.FindId(geometry.ParentIdefId)
-    if definition is None:
-        left_out["block without a definition"] += 1
-        return
-    for member in definition.GetObjectIds():
-        inner = by_id.get(str(member))
-        if inner is not None:
-            for placed in _expand(name, file, by_id, inner, place, left_out, (*transforms, geometry.Xform)):
-                yield replace(placed, label=placed.label.over(label))
-
-
-def _label(file: RhinoFile, thing: RhinoObject) -> tuple[Label, bool]:
-    """What the file says of an object, and whether it is hidden."""
-    attributes = thing.Attributes
-    layer = next((layer for layer in file.Layers if layer.Index == attributes.LayerIndex), None)
-    by_object = attributes.ColorSource.name == "ColorFromObject"
-    color = attributes.ObjectColor if by_object or layer is None else layer.Color
-    label = Label(
-        name=attributes.Name or "",
-        layer="" if layer is None else layer.FullPath or layer.Name,
-        color="#{:02x}{:02x}{:02x}".format(*color[:3]),
-    )
-    return label, not attributes.Visible or attributes.Mode.name == "Hidden" or not (layer is None or layer.Visible)
+    return unit_taken(millimetres), millimetres, False
 
 
 def _shape(rhino: Any, geometry: RhinoObject) -> TopoDS_Shape | None:

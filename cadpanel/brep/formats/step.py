@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from OCP.Interface import Interface_Static
 from OCP.Standard import Standard_Failure
 from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.TColStd import TColStd_SequenceOfAsciiString
 
 from cadpanel.brep.file_check import START, check_step_text
 from cadpanel.brep.formats.format import Format
+from cadpanel.brep.formats.units import scaled, unit_missing, unit_taken
 from cadpanel.brep.formats.xcaf import new_document, parts_of
 from cadpanel.brep.model import Model
-from cadpanel.brep.products import transfer
+from cadpanel.brep.products import file_unit, transfer
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.errors import ReferenceFileError
 
@@ -21,7 +22,7 @@ from cadpanel.errors import ReferenceFileError
 NAMES_OF_FACES = "read.stepcaf.subshapes.name"
 
 
-def _read(path: Path, _millimetres: float | None) -> Model:
+def _read(path: Path, millimetres: float | None) -> Model:
     silence_kernel()
     document = new_document()
     reader = STEPCAFControl_Reader()
@@ -35,15 +36,17 @@ def _read(path: Path, _millimetres: float | None) -> Model:
         ) from error
     finally:
         Interface_Static.SetIVal_s(NAMES_OF_FACES, 0)
-    return Model(source=path.name, format=STEP.name, unit=_unit(reader), parts=parts)
-
-
-def _unit(reader: STEPCAFControl_Reader) -> str:
-    """The file's units of length, in its own words."""
-    lengths, angles, solid_angles = (TColStd_SequenceOfAsciiString() for _ in range(3))
-    reader.Reader().FileUnits(lengths, angles, solid_angles)
-    words = {str(lengths.Value(index).ToCString()).lower() for index in range(1, lengths.Length() + 1)}
-    return " and ".join(sorted(words)) or "millimetre"
+    unit = file_unit(reader)
+    if unit is not None:
+        return Model(source=path.name, format=STEP.name, unit=unit, parts=parts)
+    return Model(
+        source=path.name,
+        format=STEP.name,
+        unit=unit_taken(millimetres),
+        own_unit=False,
+        parts=tuple(replace(part, shape=scaled(part.shape, millimetres or 1.0)) for part in parts),
+        notes=() if millimetres else (unit_missing(path.name),),
+    )
 
 
 STEP = Format(

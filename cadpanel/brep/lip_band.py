@@ -59,7 +59,7 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> t
         ReferenceFileError: the surface is no strip, has no lip or two that turn alike, the band reaches beyond the
             surface, or the kernel cannot cut it out.
     """
-    sections = sections_of(surface, PLACES, source)
+    sections = sections_of(surface, PLACES, source, tolerance)
     lips = sorted(lips_midway(sections), key=lambda lip: -lip.turn)
     if not lips:
         raise ReferenceFileError(

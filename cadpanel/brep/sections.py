@@ -71,11 +71,11 @@ class Sections:
         return parts * float(np.mean(widths)), np.asarray(np.mean(turns, axis=0), dtype=np.float64)
 
 
-def sections_of(surface: Surface, parts: Array, source: str) -> Sections:
+def sections_of(surface: Surface, parts: Array, source: str, tolerance: float) -> Sections:
     """Cross-sections at (n,) rising parts of a strip's length, neither 0 nor 1.
 
     Faces side by side that share a parameter are walked across along their parameter lines, all others along planes
-    through both long edges.
+    through both long edges. Faces that meet may lie apart by the tolerance, mm.
 
     Raises:
         ReferenceFileError: the surface is no strip, or cannot be cut across.
@@ -85,7 +85,7 @@ def sections_of(surface: Surface, parts: Array, source: str) -> Sections:
         found = _along_lanes(lanes, parts)
         if found is not None:
             return found
-    strip = find_strip(surface, source)
+    strip = find_strip(surface, source, tolerance)
     cuts = strip.planes(parts)
     groups = cut_by_planes(surface, cuts, source)
     starts = strip.points(parts)[0]

@@ -115,7 +115,7 @@ def _along_lanes(lanes: Lanes, parts: Array) -> Sections | None:
         lane = lanes.lanes[index]
         parameters = lane.patch.at(lane.axis, lane.own(places)[:, None], across[None, :])
         points.append(lane.patch.points(parameters))
-        normals.append(lane.patch.normals(parameters))
+        normals.append(_defined(lane.patch.normals(parameters)))
         numbers.append(np.full(POINTS, index))
         acrosses.append(across)
     return Sections(
@@ -130,6 +130,16 @@ def _along_lanes(lanes: Lanes, parts: Array) -> Sections | None:
     )
 
 
+def _defined(normals: Array) -> Array:
+    """Normals (..., q, 3) along lines, those that a surface does not have (at a pole or an apex) as they are beside."""
+    has_one = np.einsum("...d,...d->...", normals, normals) > 0.5
+    if has_one.all():
+        return normals
+    places = np.arange(normals.shape[-2])
+    distance = np.where(has_one[..., None, :], np.abs(places[:, None] - places), len(places))
+    return np.take_along_axis(normals, distance.argmin(axis=-1)[..., None], axis=-2)
+
+
 def _in_plane(faces: Sequence[TopoDS_Face], cuts: Cuts, index: int, start: Array) -> CrossSection | None:
     """The section that bounds faces in a plane, walked from the end that is nearest to `start`."""
     lines = []
@@ -140,7 +150,7 @@ def _in_plane(faces: Sequence[TopoDS_Face], cuts: Cuts, index: int, start: Array
                 continue
             places = np.arange(len(edge.points), dtype=np.float64)
             fine = interpolate([places], edge.parameters, [np.linspace(0.0, places[-1], POINTS)])
-            lines.append((patch.points(fine), patch.normals(fine)))
+            lines.append((patch.points(fine), _defined(patch.normals(fine))))
     points, normals, here = [], [], start
     while lines:
         ends = np.array([norm(line[0][[0, -1]] - here) for line in lines])

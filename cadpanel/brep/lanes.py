@@ -134,7 +134,7 @@ class Lanes:
 
 
 def find_lanes(surface: Surface) -> Lanes | None:
-    """The surface as lanes side by side, or None where its faces are trimmed or do not share a parameter.
+    """The surface as lanes side by side; None where faces are trimmed, share no parameter, or run from pole to pole.
 
     The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one. It begins at
     the end that comes first along the axis of space which it follows most.
@@ -172,7 +172,9 @@ def find_lanes(surface: Surface) -> Lanes | None:
         outer = []
     if len(outer) not in (0, 2):
         return None
-    return _forwards(Lanes(lanes=ordered, outer=tuple(outer), joints=tuple(sorted(joints))))
+    chain = Lanes(lanes=ordered, outer=tuple(outer), joints=tuple(sorted(joints)))
+    # From pole to pole there is no length along which a strip could run.
+    return None if outer and chain.reach()[-1] <= COMMON else _forwards(chain)
 
 
 def _turning_rates(patch: Patch) -> tuple[tuple[float, float], tuple[float, float]]:

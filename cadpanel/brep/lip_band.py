@@ -19,7 +19,7 @@ from cadpanel.brep.sections import CrossSection, Sections, sections_of
 from cadpanel.brep.split import Pieces
 from cadpanel.brep.split_edges import split_along
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import cross, norm, unit
+from cadpanel.reference.polyline import arc_length, cross, norm, unit
 
 Array = NDArray[np.float64]
 
@@ -41,6 +41,12 @@ NEAR = 1.0
 # A piece lies in the band when this part of its area does, as points of the strip tell that lie around it.
 MOST = 0.9
 CLOUD_ACROSS, CLOUD_ALONG = 401, 201
+# What a border of the band leaves of a face is no panel's part where it is narrower than this many tolerances, or mm
+# where that is more; but no wider than this part of the band.
+SLIVER = 1.5
+SLIVER_PART = 0.05
+# Such a piece is less than this part of its face: a blend may be as narrow, and is kept.
+CUT_OFF = 0.5
 
 
 def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> tuple[Surface, tuple[str, ...]]:
@@ -53,13 +59,13 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> t
         tolerance: how far faces that meet may lie apart, mm.
 
     Returns:
-        The band, and a note where there are further lips.
+        The band, and notes where there are further lips, or a border was moved to where two faces meet.
 
     Raises:
         ReferenceFileError: the surface is no strip, has no lip or two that turn alike, the band reaches beyond the
             surface, or the kernel cannot cut it out.
     """
-    sections = sections_of(surface, PLACES, source)
+    sections = sections_of(surface, PLACES, source, tolerance)
     lips = sorted(lips_midway(sections), key=lambda lip: -lip.turn)
     if not lips:
         raise ReferenceFileError(
@@ -81,7 +87,9 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> t
         what = f"the surface of {surface.numbers} of '{source}' along its lip"
         pieces = _cut_along_curves(surface, sections, borders, what, tolerance)
         faces = _within(pieces, surface, _cloud(sections, square), 0.5 * width, source)
-    return _joined(faces, surface, source, tolerance), notes
+    limit = min(SLIVER * max(tolerance, NEAR), SLIVER_PART * width)
+    faces, moved = _without_slivers(faces, surface, limit, source)
+    return _joined(faces, surface, source, tolerance), (*notes, *moved)
 
 
 def _other_lips(lips: Sequence[Lip], surface: Surface, width: float, source: str) -> tuple[str, ...]:
@@ -238,6 +246,31 @@ def _within(pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: 
             if share >= MOST:
                 kept.append(piece)
     return kept
+
+
+def _without_slivers(
+    faces: Sequence[SkinFace], surface: Surface, limit: float, source: str
+) -> tuple[list[SkinFace], tuple[str, ...]]:
+    """Make the band's border where two faces meet, where what it leaves beyond is no wider than a limit, mm.
+
+    Returns:
+        The pieces that stay, and a note on those that do not.
+    """
+    whole = {face.number: face.area for face in surface.faces}
+    widths = [2.0 * face.area / sum(arc_length(edge)[-1] for edge in face.samples.edges) for face in faces]
+    slivers = {
+        index: width
+        for index, (face, width) in enumerate(zip(faces, widths, strict=True))
+        if width <= limit and face.area < CUT_OFF * whole[face.number]
+    }
+    kept = [face for index, face in enumerate(faces) if index not in slivers]
+    if not slivers or not kept:
+        return list(faces), ()
+    widest = max(slivers, key=lambda index: slivers[index])
+    return kept, (
+        f"The border of the band about the lip of '{source}' would take in only {slivers[widest]:.2g} mm of "
+        f"face {faces[widest].number}, and is made where that face begins.",
+    )
 
 
 def _joined(faces: Sequence[SkinFace], surface: Surface, source: str, tolerance: float) -> Surface:

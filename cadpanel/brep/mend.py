@@ -10,22 +10,24 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cadpanel.brep.clean import find_doubles, width_of_hair
+from cadpanel.brep.connect import WORTH_A_NOTE
 from cadpanel.brep.creases import crease_of, has_breaks
 from cadpanel.brep.model import shapes_of
 from cadpanel.brep.patch import patch_of
 from cadpanel.reference.model import RawPanel
+from cadpanel.reference.outline import bridged_gap
 
 
 def mend_panels(
     panels: Sequence[RawPanel], shapes: Sequence[TopoDS_Shape], source: str, tolerance: float
 ) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
-    """Leave out faces of panels that have no width or lie on another one of their panel, and look for creases.
+    """Leave out faces of panels that have no width or lie on another one of their panel; look for gaps and creases.
 
     Args:
         panels: as sampled, with all their faces.
         shapes: theirs, in the same order.
         source: the file's name.
-        tolerance: within which a face lies on another one, mm.
+        tolerance: within which a face lies on another one, and gaps between faces are bridged, mm.
 
     Returns:
         The panels, none of them empty, and a note on each kind of thing that was found.
@@ -41,6 +43,8 @@ def mend_panels(
         if not wide:  # the outline says what is wrong with it
             mended.append(panel)
             continue
+        kept = tuple(face for place, face in enumerate(panel.faces) if place not in left_out)
+        mended.append(replace(panel, faces=kept) if left_out else panel)
         hairs += [
             f"Face {place + 1} of panel '{panel.name}' of '{source}' is only {width:.2g} mm wide and is left out"
             for place, width in narrow.items()
@@ -50,9 +54,12 @@ def mend_panels(
             "left out"
             for second, first in sorted(doubles.items())
         ]
-        kept = tuple(face for place, face in enumerate(panel.faces) if place not in left_out)
-        mended.append(replace(panel, faces=kept) if left_out else panel)
-    return tuple(mended), (*_first_of(hairs), *_first_of(doubled), *_first_of(creased))
+    return tuple(mended), (
+        *_first_of(hairs),
+        *_first_of(doubled),
+        *gap_notes(mended, source, tolerance),
+        *_first_of(creased),
+    )
 
 
 def _creases(name: str, shape: TopoDS_Shape, source: str) -> list[str]:
@@ -65,6 +72,23 @@ def _creases(name: str, shape: TopoDS_Shape, source: str) -> list[str]:
                 "counts as a part of its bend"
             )
     return found
+
+
+def gap_notes(panels: Sequence[RawPanel], source: str, tolerance: float) -> tuple[str, ...]:
+    """One note on all panels between whose faces a gap is bridged.
+
+    Args:
+        panels: as sampled.
+        source: the file's name.
+        tolerance: up to which gaps are bridged, mm.
+    """
+    gaping = [(gap, panel.name) for panel in panels if (gap := bridged_gap(panel, tolerance)) > WORTH_A_NOTE]
+    if not gaping:
+        return ()
+    gap, name = max(gaping, key=lambda found: found[0])
+    where = f"panel '{name}'" if len(gaping) == 1 else f"{len(gaping)} panels"
+    widest = f"by {gap:.2g} mm" if len(gaping) == 1 else f"the widest by {gap:.2g} mm in panel '{name}'"
+    return (f"Faces of {where} of '{source}' gape, {widest}; that is within the tolerance of {tolerance:g} mm.",)
 
 
 def _first_of(found: Sequence[str]) -> tuple[str, ...]:

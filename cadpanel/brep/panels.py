@@ -20,7 +20,7 @@ from cadpanel.brep.formats.step import STEP
 from cadpanel.brep.formats.units import refuse_given, shifted, unit_missing
 from cadpanel.brep.guard import read_guarded
 from cadpanel.brep.loading import far_origin, load_model, origin_note
-from cadpanel.brep.mend import mend_panels
+from cadpanel.brep.mend import gap_notes, mend_panels
 from cadpanel.brep.model import Model, compound_of, shapes_of
 from cadpanel.brep.products import NamedShape
 from cadpanel.brep.reading import PackedProducts
@@ -109,7 +109,9 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
         )
         for part in parts
     ]
-    return RawReference(panels=_sampled(shapes, model.source), notes=(*model.notes, *mended))
+    panels = _sampled(shapes, model.source)
+    gaps = gap_notes(panels, model.source, settings.seam_tolerance)
+    return RawReference(panels=panels, notes=(*model.notes, *mended, *gaps))
 
 
 def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:

@@ -71,11 +71,11 @@ class Sections:
         return parts * float(np.mean(widths)), np.asarray(np.mean(turns, axis=0), dtype=np.float64)
 
 
-def sections_of(surface: Surface, parts: Array, source: str) -> Sections:
+def sections_of(surface: Surface, parts: Array, source: str, tolerance: float) -> Sections:
     """Cross-sections at (n,) rising parts of a strip's length, neither 0 nor 1.
 
     Faces side by side that share a parameter are walked across along their parameter lines, all others along planes
-    through both long edges.
+    through both long edges. Faces that meet may lie apart by the tolerance, mm.
 
     Raises:
         ReferenceFileError: the surface is no strip, or cannot be cut across.
@@ -85,7 +85,7 @@ def sections_of(surface: Surface, parts: Array, source: str) -> Sections:
         found = _along_lanes(lanes, parts)
         if found is not None:
             return found
-    strip = find_strip(surface, source)
+    strip = find_strip(surface, source, tolerance)
     cuts = strip.planes(parts)
     groups = cut_by_planes(surface, cuts, source)
     starts = strip.points(parts)[0]
@@ -115,7 +115,7 @@ def _along_lanes(lanes: Lanes, parts: Array) -> Sections | None:
         lane = lanes.lanes[index]
         parameters = lane.patch.at(lane.axis, lane.own(places)[:, None], across[None, :])
         points.append(lane.patch.points(parameters))
-        normals.append(lane.patch.normals(parameters))
+        normals.append(_defined(lane.patch.normals(parameters)))
         numbers.append(np.full(POINTS, index))
         acrosses.append(across)
     return Sections(
@@ -130,6 +130,16 @@ def _along_lanes(lanes: Lanes, parts: Array) -> Sections | None:
     )
 
 
+def _defined(normals: Array) -> Array:
+    """Normals (..., q, 3) along lines, those that a surface does not have (at a pole or an apex) as they are beside."""
+    has_one = np.einsum("...d,...d->...", normals, normals) > 0.5
+    if has_one.all():
+        return normals
+    places = np.arange(normals.shape[-2])
+    distance = np.where(has_one[..., None, :], np.abs(places[:, None] - places), len(places))
+    return np.take_along_axis(normals, distance.argmin(axis=-1)[..., None], axis=-2)
+
+
 def _in_plane(faces: Sequence[TopoDS_Face], cuts: Cuts, index: int, start: Array) -> CrossSection | None:
     """The section that bounds faces in a plane, walked from the end that is nearest to `start`."""
     lines = []
@@ -140,7 +150,7 @@ def _in_plane(faces: Sequence[TopoDS_Face], cuts: Cuts, index: int, start: Array
                 continue
             places = np.arange(len(edge.points), dtype=np.float64)
             fine = interpolate([places], edge.parameters, [np.linspace(0.0, places[-1], POINTS)])
-            lines.append((patch.points(fine), patch.normals(fine)))
+            lines.append((patch.points(fine), _defined(patch.normals(fine))))
     points, normals, here = [], [], start
     while lines:
         ends = np.array([norm(line[0][[0, -1]] - here) for line in lines])

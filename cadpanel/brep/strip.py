@@ -89,18 +89,23 @@ class Strip:
         )
 
 
-def find_strip(surface: Surface, source: str) -> Strip:
+def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
     """The long edges of a surface with four sides, or one with more where two of them are clearly its ends.
 
     The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one. It begins at
     the end that comes first along the axis of space which it follows most.
+
+    Args:
+        surface: any.
+        source: the reference's name.
+        tolerance: how far faces that meet may lie apart, mm.
 
     Raises:
         ReferenceFileError: the surface is no strip.
     """
     raw = RawPanel(name=surface.name, faces=tuple(face.samples for face in surface.faces))
     try:
-        sides = find_outline(raw, source).sides
+        sides = find_outline(raw, source, tolerance).sides
     except OutlineError as error:
         fewer = "choose fewer faces, or " if len(surface.faces) > 1 else ""
         raise ReferenceFileError(

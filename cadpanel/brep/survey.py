@@ -159,7 +159,7 @@ def measured(path: Path, how: ReferenceSettings) -> Survey:
         format=model.format,
         unit=model.unit,
         faces=tuple(map(_face, skin)),
-        surfaces=tuple(_surface(surface, model.source) for surface in surfaces),
+        surfaces=tuple(_surface(surface, model.source, how.seam_tolerance) for surface in surfaces),
         curves=tuple(
             CurveSurvey(
                 number=curve.number,
@@ -204,10 +204,10 @@ def _size(patch: Patch) -> tuple[float, float]:
     return along_u, along_v
 
 
-def _surface(surface: Surface, source: str) -> SurfaceSurvey:
+def _surface(surface: Surface, source: str, tolerance: float) -> SurfaceSurvey:
     lips, strip = None, None
     try:
-        sections = sections_of(surface, SECTIONS, source)
+        sections = sections_of(surface, SECTIONS, source, tolerance)
     except ReferenceFileError:
         sections = None  # it is no strip: nothing was measured, and nothing is said
     if sections is not None:

@@ -36,7 +36,7 @@ def assemble(
     Args:
         raw_panels: the panels as sampled, each with a name of its own.
         source: the file's name, kept and used in messages.
-        seam_tolerance: how far the ends of two panels that meet may lie apart, mm.
+        seam_tolerance: how far panels that meet, and faces of one panel, may lie apart, mm.
         junctions: part the sides of panels where corners of others lie on them?
 
     Raises:
@@ -48,7 +48,7 @@ def assemble(
         raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance!r}.")
     if not raw_panels:
         raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
-    outlines = [find_outline(raw, source) for raw in raw_panels]
+    outlines = [find_outline(raw, source, seam_tolerance) for raw in raw_panels]
     if junctions:
         outlines = part_sides(outlines, seam_tolerance)
     sheets = [sheet(raw, outline) for raw, outline in zip(raw_panels, outlines, strict=True)]

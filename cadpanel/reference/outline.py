@@ -9,16 +9,22 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.errors import OutlineError, PanelError
+from cadpanel.errors import OutlineError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_lengths, distances_to_polylines, end_tangents, interpolate, norm, unit
+from cadpanel.reference.outline_faults import check_faces, check_loops, narrowest, refuse_hairs
+from cadpanel.reference.polyline import end_tangents, interpolate, norm, unit
 from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
 
-# Faces of one panel touch where they come within this, and within this part of the panel's size.
+# Faces of one panel touch where they come within this, mm, and within this part of the panel's size.
 TOUCH_TOLERANCE = 1.0
 TOUCH_PART = 1e-3
+# Where they make no outline then, wider gaps are bridged, up to the tolerance and this part of the narrowest face's
+# width: there an edge is nearer to its neighbour than to the other side of its own face.
+BRIDGED_PART = 0.4
+# Edges that are shorter than this many tolerances do not tell that faces meet along them.
+BIT = 2.0
 # The outline has a corner where it turns by more than this in the surface, degrees. Where it turns less, but by more
 # than the second, a curved panel with four clear corners has bent edges, and any other one has a corner there, too.
 CORNER_ANGLE = 30.0
@@ -27,8 +33,6 @@ FOUR = 4
 # A panel is flat where its normals lie within this angle of their mean, degrees.
 FLAT = 0.5
 FEWEST_CORNERS = 3
-# A face whose area is less than this part of its outline's length squared is a line.
-SLIVER = 1e-6
 # Points on each side of the outline that is handed on.
 OUTLINE_POINTS = 65
 EVEN_PARTS = np.linspace(0.0, 1.0, OUTLINE_POINTS)
@@ -56,69 +60,100 @@ class Outline:
     face_signs: tuple[float, ...]
 
 
-def find_outline(panel: RawPanel, source: str) -> Outline:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Walk:
+    """A panel's faces as they hang together within one tolerance, mm.
+
+    Attributes:
+        free: edges along which nothing of the panel goes on.
+        contacts: faces that touch along edges.
+        signs: for each face that hangs together with face 0, 1 or -1.
+        loops: the free edges, walked round.
+        loose: points (3,) in which other than two free edges meet.
+    """
+
+    tolerance: float
+    free: list[Edge]
+    contacts: list[Contact]
+    signs: dict[int, float]
+    loops: list[list[Edge]]
+    loose: list[Array]
+
+    def is_whole(self, panel: RawPanel) -> bool:
+        """Whether all faces hang together and have one outline."""
+        return len(self.loops) == 1 and not self.loose and len(self.signs) == len(panel.faces)
+
+
+def find_outline(panel: RawPanel, source: str, tolerance: float = TOUCH_TOLERANCE) -> Outline:
     """Return the outline of a panel, whatever the order and direction of its faces and edges.
 
     Args:
         panel: the panel as sampled.
         source: the file's name, for messages.
+        tolerance: gaps between the faces up to this width are bridged, mm.
 
     Raises:
         OutlineError: a face has no area, the faces do not touch, or their outline is not one loop with corners.
         PanelError: there are no faces, or one is too narrow.
     """
     check_faces(panel, source)
-    tolerance = min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
+    walk = _walk(panel, tolerance)
+    if not walk.is_whole(panel):
+        refuse_hairs(panel, source, _touch_tolerance(panel))
+        check_loops(panel, source, walk.signs, walk.free, walk.loops, walk.loose, walk.tolerance)
+    loop = [replace(edge, normals=walk.signs[edge.face] * edge.normals) for edge in walk.loops[0]]
+    sides = _cut_at_corners(loop, panel, source, walk.tolerance)
+    return Outline(sides=sides, face_signs=tuple(walk.signs[face] for face in range(len(panel.faces))))
+
+
+def bridged_gap(panel: RawPanel, tolerance: float) -> float:
+    """Width of the widest gap between faces of a panel that its outline bridges, mm.
+
+    Args:
+        panel: with faces that have an area.
+        tolerance: as for `find_outline`, mm.
+    """
+    if len(panel.faces) < 2:
+        return 0.0
+    return max((contact.gap for contact in _walk(panel, tolerance).contacts), default=0.0)
+
+
+def _walk(panel: RawPanel, tolerance: float) -> _Walk:
+    """Walk round a panel within the tolerance that suits its size; where that gives no outline, within a wider one."""
+    close = _touch_tolerance(panel)
+    walk = _walk_within(panel, close)
+    wide = min(tolerance, BRIDGED_PART * narrowest(panel))
+    if wide <= close:
+        return walk
+    # Where faces overlap by a little more than the close tolerance, bits of their ends lie on each other.
+    bits = any(contact.length < BIT * wide for contact in walk.contacts)
+    if walk.is_whole(panel) and not bits:
+        return walk
+    wider = _walk_within(panel, wide)
+    return walk if walk.is_whole(panel) and not wider.is_whole(panel) else wider
+
+
+def _walk_within(panel: RawPanel, tolerance: float) -> _Walk:
+    """Walk round a panel; edges are parted where others end on them only where it is not whole without."""
     edges = panel_edges(panel, tolerance)
-    free, contacts = free_edges(edges, tolerance)
-    signs = _face_signs(len(panel.faces), contacts)
-    loops, loose = _chain(free, tolerance)
-    if len(loops) != 1 or loose or len(signs) < len(panel.faces):
-        free, contacts = free_edges(split_at_vertices(edges, tolerance), tolerance)
-        signs = _face_signs(len(panel.faces), contacts)
+    for parted in (False, True):
+        free, contacts = free_edges(split_at_vertices(edges, tolerance) if parted else edges, tolerance)
         loops, loose = _chain(free, tolerance)
-        if len(loops) != 1 or loose or len(signs) < len(panel.faces):
-            _refuse_hairs(panel, source, tolerance)
-            _check_loops(panel, source, signs, free, loops, loose, tolerance)
-    loop = [replace(edge, normals=signs[edge.face] * edge.normals) for edge in loops[0]]
-    sides = _cut_at_corners(loop, panel, source, tolerance)
-    return Outline(sides=sides, face_signs=tuple(signs[face] for face in range(len(panel.faces))))
+        walk = _Walk(
+            tolerance=tolerance,
+            free=free,
+            contacts=contacts,
+            signs=_face_signs(len(panel.faces), contacts),
+            loops=loops,
+            loose=loose,
+        )
+        if walk.is_whole(panel):
+            break
+    return walk
 
 
-def check_faces(panel: RawPanel, source: str) -> None:
-    """Refuse a panel without faces, and one with a face that has shrunk to a line or a point.
-
-    Raises:
-        OutlineError: naming the face by its place.
-        PanelError: there are no faces.
-    """
-    if not panel.faces:
-        raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
-    for place, (face, (area, around)) in enumerate(zip(panel.faces, _measures(panel), strict=True), start=1):
-        if len(face.points) == 0 or area <= SLIVER * around**2:
-            fault = f"face {place} of {len(panel.faces)} has no area"
-            raise OutlineError(panel.name, source, fault, "delete it and export again")
-
-
-def _refuse_hairs(panel: RawPanel, source: str, tolerance: float) -> None:
-    """Say of a panel without an outline that one of its faces is so narrow that its short edges count as points.
-
-    Raises:
-        PanelError: naming the face by its place, and its width.
-    """
-    for place, (area, around) in enumerate(_measures(panel), start=1):
-        if 2.0 * area <= tolerance * around:
-            raise PanelError(
-                panel.name,
-                f"in '{source}', face {place} of {len(panel.faces)} is only {2.0 * area / around:.2g} mm wide, too "
-                "narrow for a panel: leave it out, or cut the surface into fewer panels.",
-            )
-
-
-def _measures(panel: RawPanel) -> list[tuple[float, float]]:
-    """Area (mm^2) of each face, and how long its boundary is (mm)."""
-    lengths = iter(arc_lengths([points for face in panel.faces for points in face.edges]))
-    return [(float(face.weights.sum()), sum(float(next(lengths)[-1]) for _ in face.edges)) for face in panel.faces]
+def _touch_tolerance(panel: RawPanel) -> float:
+    return min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
 
 
 def _size(panel: RawPanel) -> float:
@@ -179,50 +214,6 @@ def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], l
     return loops, []
 
 
-def _check_loops(
-    panel: RawPanel,
-    source: str,
-    signs: dict[int, float],
-    free: Sequence[Edge],
-    loops: Sequence[Sequence[Edge]],
-    loose: Sequence[Array],
-    tolerance: float,
-) -> None:
-    """Say why a panel's free edges do not form one closed outline, where they do not."""
-    count = len(panel.faces)
-    if len(signs) < count:
-        gap = _gap(panel, signs)
-        touch = f"only {len(signs)} of its {count} faces touch each other along"
-        fault = (
-            f"{touch} whole edges"
-            if gap <= tolerance
-            else f"{touch} an edge, the nearest other one is {gap:.3g} mm away"
-        )
-        raise OutlineError(panel.name, source, fault, "join the faces, or export them as panels of their own")
-    if not free:
-        fault = "it is a closed surface without an outline"
-        raise OutlineError(panel.name, source, fault, "export an open sheet of four sides")
-    if loose:
-        x, y, z = loose[0]
-        fault = f"its outline is not closed or branches at ({x:.1f}, {y:.1f}, {z:.1f})"
-        raise OutlineError(panel.name, source, fault, "join its faces along whole edges and export again")
-    if len(loops) > 1:
-        fault = f"its outline has {len(loops)} loops where a panel has one"
-        raise OutlineError(panel.name, source, fault, "close its holes, export again")
-
-
-def _gap(panel: RawPanel, connected: dict[int, float]) -> float:
-    """Least distance from the edges of the connected faces to the points of those of the others, mm."""
-    inside, outside = (
-        [edge for face, samples in enumerate(panel.faces) if (face in connected) == side for edge in samples.edges]
-        for side in (True, False)
-    )
-    if not inside or not outside:
-        return float("inf")
-    points = np.concatenate(outside)[None]
-    return min(float(distances_to_polylines(points, edge[None]).min()) for edge in inside)
-
-
 def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, tolerance: float) -> tuple[Side, ...]:
     """Cut a closed loop of edges into its sides."""
     turns = _turns(loop)
@@ -230,7 +221,7 @@ def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, toleranc
     if len(corners) != FOUR or _is_flat(loop):
         corners = np.flatnonzero(turns > OBTUSE_CORNER).tolist()
     if len(corners) < FEWEST_CORNERS:
-        _refuse_hairs(panel, source, tolerance)
+        refuse_hairs(panel, source, tolerance)
         places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*loop[index].points[0]) for index in corners)
         raise OutlineError(
             panel.name,

@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import STENCIL, arc_length, arc_lengths, interpolate, norm
+from cadpanel.reference.polyline import STENCIL, arc_length, arc_lengths, distances_to_curves, interpolate, norm
 
 Array = NDArray[np.float64]
 
 # Two edges coincide when they do at this many evenly spread points.
 PROBES = 9
+# Inner places of an edge, as parts of its length, at which its distance to the one that it coincides with is measured.
+INNER = np.array([0.25, 0.5, 0.75])
+# A gap narrower than this is not measured any closer, mm.
+SEEN = 0.01
 # Points of a piece that is cut out of an edge.
 PIECE_POINTS = 33
 # Neighbouring points closer than this part of the edge's length count as one.
@@ -55,10 +59,19 @@ class Edge:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Two faces that share an edge; `agree` tells whether their normals there lie on the same side."""
+    """Two faces that share an edge.
+
+    Attributes:
+        faces: their places in the panel.
+        agree: whether their normals there lie on the same side.
+        gap: how far apart the edges lie, mm.
+        length: of the shorter edge, mm.
+    """
 
     faces: tuple[int, int]
     agree: bool
+    gap: float
+    length: float
 
 
 def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
@@ -101,9 +114,9 @@ def free_edges(edges: Sequence[Edge], tolerance: float) -> tuple[list[Edge], lis
     candidates = np.argwhere(np.triu((direct | reverse) & (faces[:, None] != faces[None, :]), 1)).tolist()
     contacts, shared = [], set()
     for first, second in candidates:
-        agree = _coincide(edges[first], edges[second], tolerance)
-        if agree is not None:
-            contacts.append(Contact((edges[first].face, edges[second].face), agree))
+        contact = _coincide(edges[first], edges[second], tolerance)
+        if contact is not None:
+            contacts.append(contact)
             shared |= {first, second}
     return [edge for index, edge in enumerate(edges) if index not in shared], contacts
 
@@ -127,17 +140,27 @@ def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
     return near
 
 
-def _coincide(first: Edge, second: Edge, tolerance: float) -> bool | None:
-    """Return None where two edges do not coincide, else whether their normals lie on the same side."""
+def _coincide(first: Edge, second: Edge, tolerance: float) -> Contact | None:
+    """The contact along two edges, None where they do not coincide."""
     points, normals, other_points, other_normals = first.points, first.normals, second.points, second.normals
     if len(points) != len(other_points):
         parts = np.linspace(0.0, 1.0, PROBES)
         points, normals = first.at(parts * first.length)
         other_points, other_normals = second.at(parts * second.length)
     for order in (slice(None), slice(None, None, -1)):
-        if (norm(points - other_points[order]) <= tolerance).all():
-            return bool(np.sum(normals * other_normals[order]) > 0.0)
+        apart = float(norm(points - other_points[order]).max())
+        if apart <= tolerance:
+            agree = bool(np.sum(normals * other_normals[order]) > 0.0)
+            # Points may lie beside each other along the edges only.
+            gap = apart if apart <= SEEN else _gap(first, second)
+            return Contact((first.face, second.face), agree, gap, min(first.length, second.length))
     return None
+
+
+def _gap(first: Edge, second: Edge) -> float:
+    """How far inner points of an edge lie from another edge at most, mm."""
+    probes, _ = first.at(INNER * first.length)
+    return float(distances_to_curves(probes[None], second.points[None]).max())
 
 
 def positions_on(edge: Edge, vertices: Array, tolerance: float) -> list[float]:

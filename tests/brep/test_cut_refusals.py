@@ -155,8 +155,6 @@ def test_planes_that_leave_rings_are_refused_with_another_way_to_cut(tmp_path, f
 
 
 def test_a_panel_without_an_outline_in_the_file_itself_keeps_its_own_remedy(tmp_path):
-    with pytest.raises(
-        PanelError, match="its outline has 2 loops where a panel has one: close its holes, export again"
-    ):
+    with pytest.raises(PanelError, match="its outline has 2 loops where a panel has one: close its holes, trim"):
         reference_of(tmp_path, HOLED)
     assert np.isclose(area_of(compound_of([HOLED])), 12e6 - math.pi * 500.0**2)

@@ -76,6 +76,26 @@ def test_the_band_of_a_tapered_strip_is_even():
     assert max(areas) <= 1.02 * min(areas)
 
 
+@pytest.mark.parametrize("beyond", [0.01, 0.3, 0.7, 1.0, 1.4, 2.0, 10.0])
+@pytest.mark.parametrize("wander", [0.0, 0.15], ids=["along parameters", "along curves"])
+def test_a_border_close_to_where_two_faces_meet_is_made_there(tmp_path, beyond, wander):
+    path = write_shape(tmp_path / "fold.brep", compound_of(faces_of(fold(wander=wander), WHOLE)))
+    reference = cp.read(path, unit="mm", divide=3, lip=TURN * RADIUS + 2.0 * beyond)
+    notes = [note for note in reference.notes if "would take in only" in note]
+    assert len(notes) == (beyond < 1.5)
+    asked = TURN * RADIUS + 2.0 * (0.0 if notes else beyond)
+    area = sum(panel.weights.sum() for panel in reference.panels)
+    assert area == pytest.approx(asked * LENGTH, rel=EQUAL)
+
+
+def test_a_band_may_be_as_wide_as_inspect_says_that_its_lip_is(tmp_path):
+    path = write_shape(tmp_path / "fold.brep", compound_of(faces_of(fold(), WHOLE)))
+    (surface,) = cp.inspect(path, unit="mm").surfaces
+    assert surface.lips is not None
+    (lip,) = surface.lips
+    assert len(cp.read(path, unit="mm", divide=3, lip=round(lip.width, 1)).panels) == 3
+
+
 def test_the_lip_lies_in_the_middle_of_the_band(tmp_path):
     faces = faces_of(fold(sweep=0.3), *STAGGERED)
     reference = cp.read(write_shape(tmp_path / "fold.brep", compound_of(faces)), unit="mm", divide=3, lip=500.0)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
-from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface
+from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface, Geom_SphericalSurface
 from OCP.gp import gp_Ax3, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 
@@ -53,6 +53,21 @@ def test_lip_of_a_strip_is_found_with_its_turn_width_and_radius(tmp_path):
     assert one.turn == pytest.approx(80.0, abs=0.5)
     assert one.radius == pytest.approx(200.0, rel=0.02)
     assert one.middle == pytest.approx(900.0 + 0.5 * math.radians(80.0) * 200.0, rel=0.01)
+
+
+@pytest.mark.parametrize("latitude", [(-0.5, 0.5), (0.0, 0.5), (0.1, 0.5), (-0.5, 0.2)])
+@pytest.mark.parametrize("turn", [0.5, 1.5, 2.0])
+def test_a_sphere_has_no_lips_at_its_poles(tmp_path, latitude, turn):
+    low, high = (part * math.pi for part in latitude)
+    ball = BRepBuilderAPI_MakeFace(Geom_SphericalSurface(gp_Ax3(), 2000.0), 0.0, turn * math.pi, low, high, 1e-6)
+    (surface,) = surveyed(tmp_path, ball.Face()).surfaces
+    assert not surface.lips
+    assert surface.strip is None or min(surface.strip) > 100.0
+
+
+def test_a_cone_has_no_lip_at_its_apex(tmp_path):
+    face = BRepBuilderAPI_MakeFace(Geom_ConicalSurface(gp_Ax3(), 0.3, 0.0), 0.0, 2.0, 0.0, 4000.0, 1e-6).Face()
+    assert surveyed(tmp_path, face).surfaces[0].lips == ()
 
 
 def test_even_bend_has_no_lip_and_two_bends_have_two():

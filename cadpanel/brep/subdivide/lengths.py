@@ -64,7 +64,7 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
     if lanes is not None:
         parts[1:-1] = lanes.at_lengths(parts[1:-1])
         return along_panels(surface.name, lanes.cut(parts))
-    strip = find_strip(surface, source)
+    strip = find_strip(surface, source, tolerance)
     if count == 1:
         return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
     return along_panels(surface.name, cut_by_planes(surface, strip.planes(parts[1:-1]), source))

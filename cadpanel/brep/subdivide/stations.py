@@ -74,7 +74,7 @@ def cut_stations(
     what = f"the surface of {surface.numbers} of '{source}'"
     least = tolerance / LARGEST_TOLERANCE
     if spine is None:
-        strip = find_strip(surface, source)
+        strip = find_strip(surface, source, tolerance)
         _require_room(stations, (0.0, strip.length), least, what)
         cuts = strip.planes(np.array(stations) / strip.length)
     else:

@@ -12,6 +12,8 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
+from cadpanel.brep.names import call_panels
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Label:
@@ -40,11 +42,20 @@ class Part:
         label: what the file says of it.
         shape: solid, shell, face, compound, wire or edge, placed, mm.
         face_labels: what the file says of each of its faces, in the explorer's order.
+        product: the name of the product that it is, in formats with products.
+        instance: the name of this use of the product in its assembly.
     """
 
     label: Label
     shape: TopoDS_Shape
     face_labels: tuple[Label, ...]
+    product: str = ""
+    instance: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """All that it is called in the file."""
+        return tuple(name for name in dict.fromkeys((self.label.name, self.product, self.instance)) if name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +68,8 @@ class ModelFace:
         label: its own, filled up from its part's.
         face: the kernel's face.
         of_solid: whether it bounds a solid.
+        names: all that it, and its part, is called in the file.
+        panel: what its part is called as a ready-made panel.
     """
 
     number: int
@@ -64,6 +77,8 @@ class ModelFace:
     label: Label
     face: TopoDS_Face
     of_solid: bool
+    names: tuple[str, ...]
+    panel: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +114,7 @@ class Model:
     def faces(self) -> tuple[ModelFace, ...]:
         """All faces in file order."""
         found: list[ModelFace] = []
-        for index, part in enumerate(self.parts):
+        for index, (part, panel) in enumerate(zip(self.parts, self.panel_names(), strict=True)):
             solids = [shape for solid in shapes_of(part.shape, TopAbs_SOLID) for shape in shapes_of(solid, TopAbs_FACE)]
             bounding = {hash(face) for face in solids}
             for face, label in zip(shapes_of(part.shape, TopAbs_FACE), part.face_labels, strict=True):
@@ -110,9 +125,18 @@ class Model:
                         label=label.over(part.label),
                         face=TopoDS.Face_s(face),
                         of_solid=hash(face) in bounding,
+                        names=(label.name, *part.names) if label.name else part.names,
+                        panel=panel,
                     )
                 )
         return tuple(found)
+
+    def panel_names(self) -> tuple[str, ...]:
+        """What each part is called as a ready-made panel, all different; empty for a part without faces."""
+        bearing = [index for index, part in enumerate(self.parts) if part.face_labels]
+        said = [(part.product or part.label.name, part.instance) for part in map(self.parts.__getitem__, bearing)]
+        names = dict(zip(bearing, call_panels(said), strict=True))
+        return tuple(names.get(index, "") for index in range(len(self.parts)))
 
     def curves(self) -> tuple[ModelCurve, ...]:
         """All loose curves in file order."""

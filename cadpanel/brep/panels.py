@@ -9,7 +9,7 @@ from typing import cast
 
 import numpy as np
 from OCP.Standard import Standard_Failure
-from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
@@ -21,7 +21,8 @@ from cadpanel.brep.formats.units import refuse_given, shifted, unit_missing
 from cadpanel.brep.guard import read_guarded
 from cadpanel.brep.loading import far_origin, load_model, origin_note
 from cadpanel.brep.mend import gap_notes, mend_panels
-from cadpanel.brep.model import Model, compound_of, shapes_of
+from cadpanel.brep.model import Model, compound_of
+from cadpanel.brep.names import unique_names
 from cadpanel.brep.products import NamedShape
 from cadpanel.brep.reading import PackedProducts
 from cadpanel.brep.sampling import sample_panels
@@ -92,21 +93,17 @@ def _product_panels(path: Path, how: ReferenceSettings) -> RawReference:
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
     """The parts of a model as panels, each with those of its faces that are chosen."""
+    names = model.panel_names()
     if settings.faces is None:
-        with_faces = [part for part in model.parts if shapes_of(part.shape, TopAbs_FACE)]
-        curves = len(model.parts) - len(with_faces)
+        shapes = [NamedShape(name, part.shape) for name, part in zip(names, model.parts, strict=True) if name]
+        curves = names.count("")
         notes = [f"'{model.source}' holds {curves} loose curves, which are no panels."] if curves else []
-        shapes = [NamedShape(part.label.name, "", part.shape) for part in with_faces]
         panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
         return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
     chosen, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     parts = sorted({face.source.part for face in chosen})
     shapes = [
-        NamedShape(
-            model.parts[part].label.name,
-            "",
-            compound_of(face.source.face for face in chosen if face.source.part == part),
-        )
+        NamedShape(names[part], compound_of(face.source.face for face in chosen if face.source.part == part))
         for part in parts
     ]
     panels = _sampled(shapes, model.source)
@@ -120,7 +117,7 @@ def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:
     skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
     cut = cut_surfaces(model, surfaces, settings, path)
-    shapes = [NamedShape(panel.name, "", compound_of(panel.faces)) for panel in cut.panels]
+    shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]
     notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # the reference may be read as a spine, too
     return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
 
@@ -151,22 +148,6 @@ def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...
         if not panel.faces:
             raise PanelError(panel.name, f"in '{source}', it holds no face: take it out of the export.")
     return panels
-
-
-def unique_names(names: Sequence[str]) -> list[str]:
-    """Name the nameless by their place, and number what has the same name."""
-    given = [name or f"panel {place}" for place, name in enumerate(names, start=1)]
-    taken = set(given)
-    seen: set[str] = set()
-    unique = []
-    for name in given:
-        candidate, number = name, 1
-        while candidate in seen or (number > 1 and candidate in taken):
-            number += 1
-            candidate = f"{name} ({number})"
-        seen.add(candidate)
-        unique.append(candidate)
-    return unique
 
 
 def _sample(named: Sequence[tuple[str, TopoDS_Shape]], source: str) -> list[RawPanel]:

@@ -7,7 +7,6 @@ some write one product, some an assembly with a nameless product for each face; 
 from __future__ import annotations
 
 import re
-from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,6 +28,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cadpanel.brep.formats.units import scaled
 from cadpanel.brep.instance_check import damage
+from cadpanel.brep.names import call_panels
 from cadpanel.brep.silence import silence_kernel
 from cadpanel.errors import ReferenceFileError
 
@@ -42,15 +42,23 @@ GENERIC_NAME = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class NamedShape:
-    """A shape placed in the file's coordinates (mm); names are empty where the file gives none.
+    """A shape placed in the file's coordinates (mm), under a name of its own."""
+
+    name: str
+    shape: TopoDS_Shape
+
+
+@dataclass(frozen=True, slots=True)
+class _Use:
+    """A product in its place; names are empty where the file gives none.
 
     Attributes:
-        name: the product's name.
+        product: the product's name.
         instance: the name of this use of the product in its assembly.
         shape: the placed shape.
     """
 
-    name: str
+    product: str
     instance: str
     shape: TopoDS_Shape
 
@@ -71,8 +79,7 @@ class Products:
 def read_products(path: Path, millimetres: float | None = None) -> Products:
     """Return the file's panels.
 
-    A panel is called by its product. Where several panels are one product in different places, they are called by their
-    instances.
+    They are called as `call_panels` says.
 
     Args:
         path: the file.
@@ -102,24 +109,17 @@ def read_products(path: Path, millimetres: float | None = None) -> Products:
         labels = TDF_LabelSequence()
         XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
         roots = [labels.Value(index) for index in range(1, labels.Length() + 1)]
-        products = [product for root in roots for product in _flatten(root, TopLoc_Location())]
+        uses = [use for root in roots for use in _flatten(root, TopLoc_Location())]
     except Standard_Failure as error:
         raise ReferenceFileError(
             f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and export it again."
         ) from error
-    if len(products) == 1:
-        products = _split(products[0])
-    uses = Counter(product.name for product in products)
+    if len(uses) == 1:
+        uses = [replace(uses[0], shape=shape) for shape in split_groups(uses[0].shape)]
     unit = file_unit(reader)
     factor = millimetres or 1.0 if unit is None else 1.0
-    shapes = tuple(
-        replace(
-            product,
-            name=(product.instance if uses[product.name] > 1 else "") or product.name,
-            shape=scaled(product.shape, factor),
-        )
-        for product in products
-    )
+    names = call_panels([(use.product, use.instance) for use in uses])
+    shapes = tuple(NamedShape(name, scaled(use.shape, factor)) for name, use in zip(names, uses, strict=True))
     return Products(shapes=shapes, unit=unit)
 
 
@@ -160,28 +160,26 @@ def _first_fail(check: Interface_Check) -> str:
     return message.strip().rstrip(".")
 
 
-def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[NamedShape]:
+def _flatten(label: TDF_Label, location: TopLoc_Location) -> list[_Use]:
     """Return the panels below one label, placed by `location`."""
-    product, instance = TDF_Label(), label_name(label)
-    if instance.isdecimal():  # a number is what programs call a use of a product when the user does not
-        instance = ""
+    product = TDF_Label()
     if XCAFDoc_ShapeTool.IsReference_s(label):
         location = location.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label))
         XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
     else:
         product = label
-    name = label_name(product)
     components = TDF_LabelSequence()
     if XCAFDoc_ShapeTool.IsAssembly_s(product):
         XCAFDoc_ShapeTool.GetComponents_s(product, components)
-    if components.Length() == 0 or _is_sheet_in_pieces(product, components):
-        return [NamedShape(name, instance, XCAFDoc_ShapeTool.GetShape_s(product).Moved(location))]
+    if components.Length() == 0 or is_sheet_in_pieces(product, components):
+        shape = XCAFDoc_ShapeTool.GetShape_s(product).Moved(location)
+        return [_Use(label_name(product), instance_name(label), shape)]
     return [
         panel for index in range(1, components.Length() + 1) for panel in _flatten(components.Value(index), location)
     ]
 
 
-def _is_sheet_in_pieces(assembly: TDF_Label, components: TDF_LabelSequence) -> bool:
+def is_sheet_in_pieces(assembly: TDF_Label, components: TDF_LabelSequence) -> bool:
     """Tell whether an assembly only holds the nameless single faces of one panel."""
     own_name = label_name(assembly)
     for index in range(1, components.Length() + 1):
@@ -204,17 +202,23 @@ def label_name(label: TDF_Label) -> str:
     return "" if GENERIC_NAME.fullmatch(name) else name
 
 
-def _split(product: NamedShape) -> list[NamedShape]:
+def instance_name(use: TDF_Label) -> str:
+    """Return the name of a use of a product; a mere number is what programs call it when the user does not."""
+    name = label_name(use)
+    return "" if name.isdecimal() else name
+
+
+def split_groups(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     """Split a file's only product into its compounds and shells, where it holds more than the faces of one panel."""
-    shape = product.shape
+    whole = shape
     children = _children(shape)
     while shape.ShapeType() == TopAbs_COMPOUND and len(children) == 1:
         shape = children[0]
         children = _children(shape)
     groups = [child for child in children if child.ShapeType() in (TopAbs_COMPOUND, TopAbs_SHELL)]
     if shape.ShapeType() != TopAbs_COMPOUND or len(groups) < len(children) or all(map(_is_one_face, groups)):
-        return [product]
-    return [NamedShape("", "", group) for group in groups]
+        return [whole]
+    return groups
 
 
 def _children(shape: TopoDS_Shape) -> list[TopoDS_Shape]:

@@ -43,14 +43,14 @@ class PackedModel:
 class PackedProducts:
     """Named shapes on their way between interpreters, and the unit that their file says."""
 
-    names: tuple[tuple[str, str], ...]
+    names: tuple[str, ...]
     unit: str | None
     shapes: bytes
 
     def unpack(self) -> Products:
         """The shapes again."""
         shapes = zip(self.names, children(unpacked(self.shapes)), strict=True)
-        return Products(shapes=tuple(NamedShape(*names, shape) for names, shape in shapes), unit=self.unit)
+        return Products(shapes=tuple(NamedShape(name, shape) for name, shape in shapes), unit=self.unit)
 
 
 def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:
@@ -61,7 +61,7 @@ def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | Pac
     """
     if task == "products":
         products = read_products(path, millimetres)
-        names = tuple((product.name, product.instance) for product in products.shapes)
+        names = tuple(product.name for product in products.shapes)
         shapes = packed(compound_of(product.shape for product in products.shapes))
         return PackedProducts(names=names, unit=products.unit, shapes=shapes)
     form = format_of(path)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from glob import escape
 
-from cadpanel.brep.model import Label, Model, ModelFace
+from cadpanel.brep.model import Model, ModelFace
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import choice_named
 
@@ -16,10 +16,11 @@ NUMBERS = re.compile(r"0*(\d{1,9})(?:\s*-\s*0*(\d{1,9}))?")
 # Words that a message lists of each kind at most.
 MOST_LISTED = 8
 
-_KEYS: dict[str, Callable[[Label], str]] = {
-    "name": lambda label: label.name,
-    "layer": lambda label: label.layer,
-    "color": lambda label: label.color,
+# What the file says of a face, by the key that asks for it.
+_KEYS: dict[str, Callable[[ModelFace], tuple[str, ...]]] = {
+    "name": lambda face: face.names,
+    "layer": lambda face: (face.label.layer,) if face.label.layer else (),
+    "color": lambda face: (face.label.color,) if face.label.color else (),
 }
 
 
@@ -67,17 +68,19 @@ def _chosen(word: str, faces: Sequence[ModelFace]) -> set[int]:
     if not equals or key not in _KEYS:
         key, wanted = "name", word
     wanted = wanted.strip().lower() if key == "color" else wanted.strip()
-    said = {face.number: _KEYS[key](face.label) for face in faces}
-    alike = {number for number, text in said.items() if text and text == wanted}
+    said = {face.number: _KEYS[key](face) for face in faces}
+    alike = {number for number, texts in said.items() if wanted in texts}
+    if key == "name" and not alike:  # nor is it a name of the file's, but of one panel among several of that name
+        alike = {face.number for face in faces if face.panel == wanted}
     pattern = escape(wanted).replace("[*]", "*")  # no other sign stands for anything
-    return alike or {number for number, text in said.items() if text and fnmatchcase(text, pattern)}
+    return alike or {number for number, texts in said.items() if any(fnmatchcase(text, pattern) for text in texts)}
 
 
 def _offers(faces: Sequence[ModelFace]) -> str:
     """What there is to choose from."""
     offers = [f"it has faces 1 to {len(faces)}" if len(faces) > 1 else "it has face 1 only"]
     for key, said in _KEYS.items():
-        words = sorted({said(face.label) for face in faces} - {""})
+        words = sorted({word for face in faces for word in said(face)})
         if words:
             more = f" and {len(words) - MOST_LISTED} more" if len(words) > MOST_LISTED else ""
             offers.append(f"{key}s {', '.join(map(choice_named, words[:MOST_LISTED]))}{more}")

@@ -61,6 +61,7 @@ class FaceSurvey:
     Attributes:
         number: its place in the file, from 1, by which it may be chosen.
         label: name, layer and colour; its part's where it has none of its own.
+        panel: what its part is called as a ready-made panel; empty where it bounds a solid, which is none.
         of_solid: whether it bounds a solid.
         kind: what the file stores it as.
         poles: control points along u and v; zeros where it has none.
@@ -72,6 +73,7 @@ class FaceSurvey:
 
     number: int
     label: Label
+    panel: str
     of_solid: bool
     kind: str
     poles: tuple[int, int]
@@ -189,6 +191,7 @@ def _face(face: SkinFace) -> FaceSurvey:
     return FaceSurvey(
         number=face.number,
         label=face.source.label,
+        panel="" if face.source.of_solid else face.source.panel,
         of_solid=face.source.of_solid,
         kind=KINDS.get(kind, "other"),
         poles=(surface.NbUPoles(), surface.NbVPoles()) if has_poles else (0, 0),

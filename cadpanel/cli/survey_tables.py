@@ -35,7 +35,9 @@ def print_survey(found: Survey) -> None:
 def _faces(found: Survey) -> Table:
     table = Table(title="Faces", title_justify="left", title_style="bold")
     said = [word for word in ("name", "layer", "color") if any(getattr(face.label, word) for face in found.faces)]
-    for heading in ("face", *said, "stored as"):
+    # As a product it may be called otherwise than its face; of several with one name, each has a number.
+    panels = any(face.panel not in ("", face.label.name) for face in found.faces)
+    for heading in ("face", *said, *(["panel"] if panels else []), "stored as"):
         table.add_column(heading, overflow="fold")
     for heading in ("area, m2", "u x v", "curved", "off a plane", "Gauss, sr", "radius"):
         table.add_column(heading, justify="right")
@@ -44,6 +46,7 @@ def _faces(found: Survey) -> Table:
         table.add_row(
             str(face.number),
             *(Text(getattr(face.label, word) or NOTHING) for word in said),
+            *([Text(face.panel or NOTHING)] if panels else []),
             _kind(face),
             f"{face.area / 1e6:.4g}",
             f"{face.size[0]:.0f} x {face.size[1]:.0f}",

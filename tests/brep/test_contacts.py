@@ -36,7 +36,9 @@ def face(number, outer, hole=(), reversed_=False):
     if len(hole):
         maker.Add(wire(hole))
     made = TopoDS.Face_s(maker.Face().Reversed()) if reversed_ else maker.Face()
-    return measure(ModelFace(number=number, part=0, label=Label(), face=made, of_solid=False), "roof.step")
+    return measure(
+        ModelFace(number=number, part=0, panel="", label=Label(), names=(), face=made, of_solid=False), "roof.step"
+    )
 
 
 @pytest.mark.parametrize("plate", PLATES)

@@ -17,7 +17,7 @@ from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 
-from cadpanel.brep.panels import unique_names
+from cadpanel.brep.names import unique_names
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.sampling import sample_faces
 from tests.reference_shapes import (

@@ -29,7 +29,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
     Interface_Static.SetIVal_s(NAMES_OF_FACES, 1)
     try:
         transfer(path, document, reader)
-        parts = parts_of(document)
+        parts = parts_of(document, as_panels=True)
     except Standard_Failure as error:
         raise ReferenceFileError(
             f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and export it again."

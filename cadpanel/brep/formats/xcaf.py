@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import islice
+
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDF import TDF_Label, TDF_LabelSequence
@@ -19,8 +22,8 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
-from cadpanel.brep.model import Label, Part, shapes_of
-from cadpanel.brep.products import label_name
+from cadpanel.brep.model import Label, Part, compound_of, shapes_of
+from cadpanel.brep.products import instance_name, is_sheet_in_pieces, label_name, split_groups
 
 
 def new_document() -> TDocStd_Document:
@@ -30,19 +33,28 @@ def new_document() -> TDocStd_Document:
     return document
 
 
-def parts_of(document: TDocStd_Document) -> tuple[Part, ...]:
-    """The document's shapes, assemblies flattened, in file order."""
+def parts_of(document: TDocStd_Document, *, as_panels: bool = False) -> tuple[Part, ...]:
+    """The document's shapes, assemblies flattened, in file order.
+
+    Args:
+        document: as a reader has filled it.
+        as_panels: whether parts are what `read_products` takes for one panel each: an assembly of the nameless faces of
+            a sheet is one part, and a lone product of several sheets is as many.
+    """
     roots = TDF_LabelSequence()
     XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(roots)
     layers = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
-    return tuple(part for root in _each(roots) for part in _flatten(root, TopLoc_Location(), Label(), layers))
+    found = [part for root in _each(roots) for part in _flatten(root, TopLoc_Location(), Label(), layers, as_panels)]
+    return tuple(_split(found[0]) if as_panels and len(found) == 1 else found)
 
 
 def _each(labels: TDF_LabelSequence) -> list[TDF_Label]:
     return [labels.Value(index) for index in range(1, labels.Length() + 1)]
 
 
-def _flatten(use: TDF_Label, location: TopLoc_Location, above: Label, layers: XCAFDoc_LayerTool) -> list[Part]:
+def _flatten(
+    use: TDF_Label, location: TopLoc_Location, above: Label, layers: XCAFDoc_LayerTool, as_panels: bool
+) -> list[Part]:
     """The parts below one label; a use of a product in an assembly may carry a colour and layer of its own."""
     product = TDF_Label()
     if XCAFDoc_ShapeTool.IsReference_s(use):
@@ -50,7 +62,7 @@ def _flatten(use: TDF_Label, location: TopLoc_Location, above: Label, layers: XC
         XCAFDoc_ShapeTool.GetReferredShape_s(use, product)
         own = _label(product, layers)
         said = Label(
-            name=own.name or _instance(use), layer=_layer(use, layers) or own.layer, color=_color(use) or own.color
+            name=own.name or instance_name(use), layer=_layer(use, layers) or own.layer, color=_color(use) or own.color
         ).over(above)
     else:
         product = use
@@ -58,12 +70,28 @@ def _flatten(use: TDF_Label, location: TopLoc_Location, above: Label, layers: XC
     components = TDF_LabelSequence()
     if XCAFDoc_ShapeTool.IsAssembly_s(product):
         XCAFDoc_ShapeTool.GetComponents_s(product, components)
-    if components.Length():
-        # A name of an assembly is not one of its parts', but its colour and layer hold for them.
-        below = Label(layer=said.layer, color=said.color)
-        return [part for component in _each(components) for part in _flatten(component, location, below, layers)]
-    shape = XCAFDoc_ShapeTool.GetShape_s(product)
-    return [Part(label=said, shape=shape.Moved(location), face_labels=_face_labels(product, shape, layers))]
+    whole = Part(label=said, shape=None, face_labels=(), product=label_name(product), instance=instance_name(use))
+    if not components.Length():
+        shape = XCAFDoc_ShapeTool.GetShape_s(product)
+        return [replace(whole, shape=shape.Moved(location), face_labels=_face_labels(product, shape, layers))]
+    # A name of an assembly is not one of its parts', but its colour and layer hold for them.
+    below = Label(layer=said.layer, color=said.color)
+    parts = [
+        part for component in _each(components) for part in _flatten(component, location, below, layers, as_panels)
+    ]
+    if not (as_panels and is_sheet_in_pieces(product, components)):
+        return parts
+    labels = tuple(label.over(part.label) for part in parts for label in part.face_labels)
+    return [replace(whole, shape=compound_of(part.shape for part in parts), face_labels=labels)]
+
+
+def _split(part: Part) -> list[Part]:
+    """A lone product as the sheets that it holds."""
+    labels = iter(part.face_labels)
+    return [
+        replace(part, shape=shape, face_labels=tuple(islice(labels, len(shapes_of(shape, TopAbs_FACE)))))
+        for shape in split_groups(part.shape)
+    ]
 
 
 def _face_labels(product: TDF_Label, shape: TopoDS_Shape, layers: XCAFDoc_LayerTool) -> tuple[Label, ...]:
@@ -82,12 +110,6 @@ def _face_labels(product: TDF_Label, shape: TopoDS_Shape, layers: XCAFDoc_LayerT
 
 def _label(label: TDF_Label, layers: XCAFDoc_LayerTool) -> Label:
     return Label(name=label_name(label), layer=_layer(label, layers), color=_color(label))
-
-
-def _instance(use: TDF_Label) -> str:
-    """The name of a use of a product; a mere number is what programs call it when the user does not."""
-    name = label_name(use)
-    return "" if name.isdecimal() else name
 
 
 def _layer(label: TDF_Label, layers: XCAFDoc_LayerTool) -> str:

@@ -170,15 +170,16 @@ def _over(
             if stretch is not None:
                 first, last = run.start + run.first, run.start + run.last
                 where = first + np.flatnonzero(inside[first : last + 1])
-                stretches.append((stretch, where, feet.distances[where]))
+                stretches.append((stretch, where, feet.distances[where], run.along))
         found.append(stretches)
     return [
         [
             _Over(
-                stretch=stretch,
+                # What runs beside a joint lies beside this face, and on the other one.
+                stretch=replace(stretch, offset=float(nearest[where].max())) if along and len(where) else stretch,
                 apart=bool(np.count_nonzero(distances > nearest[where] + tolerance) > MOSTLY * len(where)),
             )
-            for stretch, where, distances in stretches
+            for stretch, where, distances, along in stretches
         ]
         for stretches in found
     ]

@@ -11,6 +11,7 @@ from cadpanel.brep.split import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_drawn_curves import LENGTH, WIDTH, circle, cut, line, plate, polyline, raw
+from tests.brep.test_network import curve
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
 
@@ -49,6 +50,14 @@ def test_lift_over_a_joint_changes_no_panel(tmp_path, corners, count, height):
     assert lifted == pytest.approx(flat, rel=1e-6)
 
 
+def test_curve_in_the_plane_that_touches_a_joint_is_not_said_to_lie_off_it(tmp_path):
+    t = np.linspace(-1.0, 1.0, 33)
+    touching = curve(np.stack([MIDDLE - 1010.0 * t**2, 0.5 * WIDTH + 1010.0 * t, 0.0 * t], axis=1))
+    found = raw(tmp_path, halves(), [touching])
+    assert len(found.panels) >= 2
+    assert not [note for note in found.notes if "off the surface" in note]
+
+
 def test_curve_beside_the_outline_by_more_than_the_tolerance_leaves_nothing_on_it(tmp_path):
     across = line((1500, -10, 0), (1500, 2010, 0))
     beside = polyline((-10, -2, 2), (4500, -2, 2), (4500, 2010, 2))
@@ -82,10 +91,10 @@ def notched():
     ids=["through both", "corner of the notch", "aslant", "hardly across the joint", "through the notch's corner"],
 )
 def test_curve_over_a_notch_cuts_what_fills_it_as_a_plate_without_one(tmp_path, first, last, height):
-    curve = line((*first, height), (*last, height))
-    whole = panel_areas(raw(tmp_path, plate(), [curve]))
+    across = line((*first, height), (*last, height))
+    whole = panel_areas(raw(tmp_path, plate(), [across]))
     assert len(whole) == 2
-    assert panel_areas(raw(tmp_path, notched(), [curve])) == pytest.approx(whole, rel=1e-6)
+    assert panel_areas(raw(tmp_path, notched(), [across])) == pytest.approx(whole, rel=1e-6)
 
 
 def test_curve_in_a_hole_lies_over_no_surface(tmp_path):

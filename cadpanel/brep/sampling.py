@@ -19,7 +19,7 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
-from cadpanel.brep.areas import trimmed_areas
+from cadpanel.brep.areas import spans_of, trimmed_areas, whole_areas
 from cadpanel.brep.boundary import Edge, sample_edges, unit_normals
 from cadpanel.brep.surface_batch import Indices, SurfaceBatch
 from cadpanel.reference.model import FaceSamples
@@ -37,6 +37,9 @@ FINE_MEASURING_GRID = 25
 # How closely a boundary must follow the border of the parameter range for the face to count as untrimmed,
 # as a part of that range.
 BORDER = 1e-6
+# Samples of an untrimmed face add up to its area where what they stand for differs by no more than this part between
+# them, and it has no more spans than lines it was measured on; else it is integrated.
+EVEN = 1e-4
 # Tolerance of the inside test, as a part of the parameter range.
 INSIDE = 1e-9
 # A trimmed face's grid has this many times the wanted samples at most, where only a small part of it lies inside.
@@ -49,7 +52,8 @@ class _MeasuredFaces:
 
     Attributes:
         faces: the kernel's faces.
-        surfaces: their surfaces.
+        adaptors: their surfaces as the kernel has them.
+        surfaces: the same, evaluated together.
         sides: (F,) -1 where a face is reversed against its surface, else 1.
         bounds: (F, 2, 2) least and largest parameter, by u and v.
         reach: two times (F, FINE_MEASURING_GRID + 1): the length walked along u (and v) on the surface up to each of
@@ -61,6 +65,7 @@ class _MeasuredFaces:
     """
 
     faces: list[TopoDS_Face]
+    adaptors: list[BRepAdaptor_Surface]
     surfaces: SurfaceBatch
     sides: Array
     bounds: Array
@@ -126,6 +131,7 @@ def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
     areas[cut] = trimmed_areas(faces, surfaces, cut, bounds)
     return _MeasuredFaces(
         faces=faces,
+        adaptors=adaptors,
         surfaces=surfaces,
         sides=sides,
         bounds=bounds,
@@ -193,6 +199,7 @@ def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
     normals, lengths, keep = unit_normals(along_u, along_v, owners)
     normals *= measured.sides[owners, None]
     weights = widths.prod(axis=1) * spans.prod(axis=1)[owners] * lengths
+    weights *= _corrections(measured, owners, weights * keep, lengths)[owners]
     found = []
     for face, (stop, size) in enumerate(zip(np.cumsum(sizes).tolist(), sizes.tolist(), strict=True)):
         own = slice(stop - size, stop)
@@ -211,6 +218,25 @@ def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
             )
         )
     return found
+
+
+def _corrections(measured: _MeasuredFaces, owners: Indices, weights: Array, speeds: Array) -> Array:
+    """(F,) factors that make weights add up to the areas of untrimmed faces; 1 for trimmed ones.
+
+    Args:
+        measured: F faces.
+        owners: (p,) the face of each sample, rising.
+        weights: (p,) mm^2.
+        speeds: (p,) |Su x Sv| there.
+    """
+    sums = np.bincount(owners, weights)
+    starts = np.flatnonzero(np.diff(owners, prepend=-1))
+    most, least = np.maximum.reduceat(speeds, starts), np.minimum.reduceat(speeds, starts)
+    many = np.array([max(spans_of(surface)) > MEASURING_GRID for surface in measured.adaptors])
+    chosen = np.flatnonzero((many | (most - least > EVEN * most)) & ~measured.trimmed & (sums > 0.0))
+    factors = np.ones(len(sums))
+    factors[chosen] = whole_areas(measured.surfaces, measured.adaptors, chosen) / sums[chosen]
+    return factors
 
 
 def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> NDArray[np.intp]:

@@ -1,8 +1,11 @@
-"""Samples weigh what their face covers, however its border waves."""
+"""Samples weigh what their face covers, however it and its border wave."""
 
 import numpy as np
 import pytest
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere, BRepPrimAPI_MakeTorus
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.model import compound_of, shapes_of
@@ -54,3 +57,40 @@ def test_sector_with_an_arc_for_its_border_weighs_as_it_should(angle):
     for face in flat:
         (samples,) = sample_faces(face)
         assert samples.weights.sum() == pytest.approx(0.5 * angle * 500.0**2, rel=1e-12)
+
+
+def ball(low, high, turn):
+    return shapes_of(BRepPrimAPI_MakeSphere(1000.0, low, high, turn).Shape(), TopAbs_FACE)[0]
+
+
+@given(low=st.floats(-1.5, 0.5), rise=st.floats(0.2, 1.0), turn=st.floats(0.3, 2.0 * np.pi))
+@settings(max_examples=25, deadline=None)
+def test_a_part_of_a_ball_weighs_what_it_covers(low, rise, turn):
+    """Its parameters cover area unevenly, and it fills their range."""
+    face = ball(low, low + rise, turn)
+    exact = 1e6 * turn * (np.sin(low + rise) - np.sin(low))
+    spline = shapes_of(BRepBuilderAPI_NurbsConvert(face, True).Shape(), TopAbs_FACE)[0]
+    for shape in (face, spline):
+        (samples,) = sample_faces(shape)
+        assert samples.weights.sum() == pytest.approx(exact, rel=1e-7)
+
+
+@pytest.mark.parametrize("minor", [200.0, 1900.0])
+def test_a_torus_weighs_what_it_covers(minor):
+    (face,) = shapes_of(BRepPrimAPI_MakeTorus(2000.0, minor).Shape(), TopAbs_FACE)
+    (samples,) = sample_faces(face)
+    assert samples.weights.sum() == pytest.approx(4.0 * np.pi**2 * 2000.0 * minor, rel=1e-9)
+
+
+@pytest.mark.parametrize("periods", [5.0, 10.0])
+@pytest.mark.parametrize("uneven", [0.0, 0.8])
+def test_a_face_that_waves_weighs_what_the_kernel_integrates_patiently(periods, uneven):
+    """Also where as many crests as lines lie on it, and all that was measured looks alike."""
+
+    def surface(u, v):
+        along = u + uneven * u * (1.0 - u)
+        return np.stack([6000.0 * along, 4000.0 * v, 150.0 * np.sin(2.0 * np.pi * periods * along)], axis=-1)
+
+    face = kernel_face(surface, (0.0, 1.0), poles=60)
+    (samples,) = sample_faces(face)
+    assert samples.weights.sum() == pytest.approx(area_of(face), rel=SPLINE_ERROR)

@@ -170,7 +170,7 @@ def test_solid_needs_its_outer_faces_chosen(tmp_path):
 def test_curves_beside_faces_are_told(tmp_path):
     line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(100.0, 0.0, 0.0)).Edge()
     path = write_shape(tmp_path / "both.brep", compound_of([compound_of(strip_faces(LIP)), compound_of([line])]))
-    assert any("1 loose curves, which are no panels" in note for note in read_raw_panels(path, how()).notes)
+    assert any("1 loose curve, which is no panel." in note for note in read_raw_panels(path, how()).notes)
 
 
 def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from OCP.Standard import Standard_Failure
+from OCP.TopoDS import TopoDS_Face
 from scipy.spatial import cKDTree
 
 from cadpanel.brep.creases import crease_of
+from cadpanel.brep.feet import Search
 from cadpanel.brep.model import ModelFace
 from cadpanel.brep.patch import Patch, patch_of
 from cadpanel.brep.sampling import sample_faces
@@ -128,7 +130,7 @@ def _without_doubles(
     faces: Sequence[SkinFace], source: str, tolerance: float
 ) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
     """Leave out each face that covers the same surface as one before it."""
-    dropped = find_doubles([face.samples for face in faces], tolerance)
+    dropped = find_doubles([face.samples for face in faces], [face.source.face for face in faces], tolerance)
     notes = tuple(
         f"Face {faces[second].number} of '{source}' lies on face {faces[first].number} and is left out."
         for second, first in sorted(dropped.items())
@@ -144,11 +146,12 @@ def width_of_hair(samples: FaceSamples) -> float | None:
     return width if area <= SLIVER * around**2 or width < HAIR else None
 
 
-def find_doubles(faces: Sequence[FaceSamples], tolerance: float) -> dict[int, int]:
+def find_doubles(faces: Sequence[FaceSamples], shapes: Sequence[TopoDS_Face], tolerance: float) -> dict[int, int]:
     """Which faces cover the same surface as one before them, and which that is, by their places.
 
     Args:
         faces: each with an area.
+        shapes: the kernel's faces, in the same order.
         tolerance: within which a face lies on another one, mm.
     """
     dropped: dict[int, int] = {}
@@ -157,15 +160,26 @@ def find_doubles(faces: Sequence[FaceSamples], tolerance: float) -> dict[int, in
     centres = np.array([face.weights @ face.points / face.weights.sum() for face in faces])
     size = max(float(np.linalg.norm(np.ptp(face.points, axis=0))) for face in faces)
     for first, second in sorted(cKDTree(centres).query_pairs(max(tolerance, CENTRES * size))):
-        if first not in dropped and second not in dropped and _alike(faces[first], faces[second], tolerance):
+        if first in dropped or second in dropped or not _alike(faces[first], faces[second], tolerance):
+            continue
+        # Faces of one border and nearly one area may part inside: two layers, or a flat one and a wavy one.
+        pairs = ((first, second), (second, first))
+        if all(_lies_on(faces[one].points, faces[other], shapes[other], tolerance) for one, other in pairs):
             dropped[second] = first
     return dropped
 
 
+def _lies_on(points: Array, samples: FaceSamples, face: TopoDS_Face, tolerance: float) -> bool:
+    """Tell whether (m, 3) points all lie on a face of which they have the border."""
+    apart = points[cKDTree(samples.points).query(points)[0] > tolerance]  # of a copy, none
+    return not len(apart) or bool((Search(patch_of(face)).feet(apart).distances <= tolerance).all())
+
+
 def _alike(first: FaceSamples, second: FaceSamples, tolerance: float) -> bool:
-    """Tell whether two faces have the same boundary and the same area."""
+    """Tell whether two faces have the same boundary and nearly the same area."""
     area, other_area = float(first.weights.sum()), float(second.weights.sum())
-    if abs(area - other_area) > 1e-3 * area + tolerance * np.sqrt(area):
+    larger = max(area, other_area)
+    if abs(area - other_area) > 1e-3 * larger + tolerance * np.sqrt(larger):
         return False
     for one, other in ((first, second), (second, first)):
         if not one.edges or not other.edges:

@@ -85,7 +85,7 @@ def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] 
     middle = 0.5 * (bounds[:3] + bounds[3:])
     if np.linalg.norm(middle) < FAR:
         return None
-    x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE).tolist()
+    x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE + 0.0).tolist()  # a note that says -0 makes one wonder
     return (x, y, z)
 
 

@@ -37,7 +37,8 @@ def mend_panels(
         widths = {place: width_of_hair(face) for place, face in enumerate(panel.faces)}
         narrow = {place: width for place, width in widths.items() if width is not None}
         wide = [place for place, width in widths.items() if width is None]
-        doubles = find_doubles([panel.faces[place] for place in wide], tolerance)
+        faces = [TopoDS.Face_s(face) for face in shapes_of(shape, TopAbs_FACE)]
+        doubles = find_doubles([panel.faces[place] for place in wide], [faces[place] for place in wide], tolerance)
         creased += _creases(panel.name, shape, source)
         left_out = {*narrow, *(wide[second] for second in doubles)}
         if not wide:  # the outline says what is wrong with it

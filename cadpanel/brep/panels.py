@@ -97,7 +97,8 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
     if settings.faces is None:
         shapes = [NamedShape(name, part.shape) for name, part in zip(names, model.parts, strict=True) if name]
         curves = names.count("")
-        notes = [f"'{model.source}' holds {curves} loose curves, which are no panels."] if curves else []
+        many = "1 loose curve, which is no panel" if curves == 1 else f"{curves} loose curves, which are no panels"
+        notes = [f"'{model.source}' holds {many}."] if curves else []
         panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
         return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
     chosen, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)

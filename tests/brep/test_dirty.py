@@ -10,9 +10,11 @@ from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
+from cadpanel.brep.clean import find_doubles
 from cadpanel.brep.loading import load_model
 from cadpanel.brep.model import Label, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
+from cadpanel.brep.sampling import sample_faces
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_network import across, quads, write_mesh
@@ -168,7 +170,7 @@ def test_solid_needs_its_outer_faces_chosen(tmp_path):
 def test_curves_beside_faces_are_told(tmp_path):
     line = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(100.0, 0.0, 0.0)).Edge()
     path = write_shape(tmp_path / "both.brep", compound_of([compound_of(strip_faces(LIP)), compound_of([line])]))
-    assert any("1 loose curves, which are no panels" in note for note in read_raw_panels(path, how()).notes)
+    assert any("1 loose curve, which is no panel." in note for note in read_raw_panels(path, how()).notes)
 
 
 def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):
@@ -207,3 +209,33 @@ def creased_face(angle):
 def test_a_crease_inside_a_face_is_told(tmp_path, angle, told):
     notes = read_raw_panels(write_shape(tmp_path / "creased.brep", creased_face(angle)), how(grid=(1, 2))).notes
     assert any(f"has a crease of {angle:.3g} degrees inside" in note for note in notes) == told
+
+
+def wavy(height, waves=1, poles=40):
+    """A face of 6 x 6 m with a flat square for its border, and waves inside."""
+
+    def surface(u, v):
+        return np.stack(
+            [6000.0 * u, 6000.0 * v, height * np.sin(waves * np.pi * u) * np.sin(waves * np.pi * v)], axis=-1
+        )
+
+    return kernel_face(surface, (0.0, 1.0), poles=poles)
+
+
+@pytest.mark.parametrize("waves", [2, 4])
+@pytest.mark.parametrize(("height", "double"), [(0.0, True), (0.5, True), (2.0, False), (40.0, False)])
+def test_face_of_the_same_border_is_a_double_only_where_it_lies_on_the_other_inside(height, double, waves):
+    faces = [wavy(0.0), wavy(height, waves)]
+    for order in (faces, faces[::-1]):
+        samples = [sample_faces(face)[0] for face in order]
+        assert (find_doubles(samples, order, 1.0) == {1: 0}) is double
+
+
+def test_curved_face_drawn_anew_in_other_parameters_is_a_double():
+    def uneven(u, v):
+        return LIP(3.0 * (0.3 * (u / 3.0) + 0.7 * (u / 3.0) ** 2), v)
+
+    faces = [kernel_face(LIP, (0.0, 3.0), poles=60), kernel_face(uneven, (0.0, 3.0), poles=60)]
+    for order in (faces, faces[::-1]):
+        samples = [sample_faces(face)[0] for face in order]
+        assert find_doubles(samples, order, 1.0) == {1: 0}

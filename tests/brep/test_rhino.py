@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 from OCP.BRep import BRep_Tool
@@ -244,6 +246,40 @@ def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_pat
     assert [face.number for face in select_faces(model, ("color=#ff0000",))] == [2]
     assert any("1 x hidden object left out" in note for note in model.notes)
     assert any("1 x Point" in note for note in model.notes)
+
+
+@pytest.mark.parametrize("off", [(), ("A",), ("A::B",), ("C",), ("A::B::D",)])
+def test_layer_is_hidden_where_one_that_it_lies_below_is(tmp_path, off):
+    file, ids = file_in(), {"": None}
+    for path in ("A", "A::B", "A::B::D", "C"):
+        above, _, name = path.rpartition("::")
+        layer = rhino.Layer()
+        layer.Name, layer.Visible = name, path not in off
+        if above:
+            layer.ParentLayerId = ids[above]
+        index = file.Layers.Add(layer)
+        ids[path] = file.Layers.FindIndex(index).Id
+        attributes = rhino.ObjectAttributes()
+        attributes.Name, attributes.LayerIndex = path, index
+        file.Objects.AddSurface(bent_surface(), attributes)
+    model = load_model(written(tmp_path / "layers.3dm", file))
+    shown = [path for path in ids if path and not any(f"{path}::".startswith(f"{hidden}::") for hidden in off)]
+    assert [face.label.name for face in model.faces()] == shown
+
+
+def test_file_of_meshes_only_is_refused_with_what_to_do_and_beside_surfaces_they_are_noted(tmp_path):
+    mesh = rhino.Mesh()
+    for corner in ((0.0, 0.0, 0.0), (1000.0, 0.0, 0.0), (0.0, 1000.0, 0.0)):
+        mesh.Vertices.Add(*corner)
+    mesh.Faces.AddFace(0, 1, 2)
+    file = file_in()
+    file.Objects.AddMesh(mesh)
+    said = r"1 x Mesh \(meshes are not read: convert it to NURBS, or give it as OBJ with --mesh over a surface\)"
+    with pytest.raises(ReferenceFileError, match=rf"'mesh.3dm' holds neither faces nor curves .* left out, {said}"):
+        load_model(written(tmp_path / "mesh.3dm", file))
+    file.Objects.AddSurface(bent_surface())
+    (note,) = load_model(written(tmp_path / "both.3dm", file)).notes
+    assert re.fullmatch(rf"'both.3dm': {said} left out\.", note)
 
 
 def test_surface_and_curves_of_one_file_make_panels(tmp_path):

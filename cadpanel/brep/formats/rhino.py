@@ -39,6 +39,8 @@ UNITS = {
     "Feet": ("foot", 304.8),
     "Yards": ("yard", 914.4),
 }
+MESH = "Mesh"
+MESH_REMEDY = "meshes are not read: convert it to NURBS, or give it as OBJ with --mesh over a surface"
 
 
 def _read(path: Path, millimetres: float | None) -> Model:
@@ -68,6 +70,8 @@ def _read(path: Path, millimetres: float | None) -> Model:
         for face in shapes_of(shape, TopAbs_FACE):
             sharpen_trims(TopoDS.Face_s(face))
         parts.append(Part(label=placed.label, shape=shape, face_labels=(Label(),) * len(shapes_of(shape, TopAbs_FACE))))
+    if left_out and not parts:
+        raise _nothing_read(path.name, left_out)
     notes = tuple(f"'{path.name}': {count} x {kind} left out." for kind, count in sorted(left_out.items()))
     return Model(source=path.name, format=RHINO.name, unit=unit, own_unit=own, parts=tuple(parts), notes=notes)
 
@@ -115,7 +119,17 @@ def _shape(rhino: Any, geometry: RhinoObject) -> TopoDS_Shape | None:
 
 
 def _kind(geometry: RhinoObject) -> str:
-    return f"{type(geometry).__name__} (only surfaces, polysurfaces, extrusions and curves are read)"
+    kind = type(geometry).__name__
+    return f"{kind} ({MESH_REMEDY if kind == MESH else 'only surfaces, polysurfaces, extrusions and curves are read'})"
+
+
+def _nothing_read(name: str, left_out: Counter[str]) -> ReferenceFileError:
+    """The refusal of a file all of whose objects are left out."""
+    what = "; ".join(f"{count} x {kind}" for kind, count in sorted(left_out.items()))
+    return ReferenceFileError(
+        f"'{name}' holds neither faces nor curves that are read, only what is left out, {what}: show or convert it in "
+        "Rhino and save again."
+    )
 
 
 RHINO = Format(

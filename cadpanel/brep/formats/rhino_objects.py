@@ -7,7 +7,7 @@ which stays round, or of an arc. What is placed is the kernel's shape: all of NU
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -95,6 +95,7 @@ class _Walk:
         self._name, self._file, self._left_out = name, file, left_out
         self._by_id = {str(thing.Attributes.Id): thing for thing in file.Objects}
         self._layers = {layer.Index: layer for layer in file.Layers}
+        self._shown = _shown_layers(self._layers.values())
 
     def below(self, thing: RhinoObject, place: int, matrices: tuple[Array, ...]) -> Iterator[Placed]:
         """One object, or those of the block that it places; `matrices` are those of the blocks that hold it."""
@@ -135,7 +136,22 @@ class _Walk:
             layer="" if layer is None else layer.FullPath or layer.Name,
             color="#{:02x}{:02x}{:02x}".format(*color[:3]),
         )
-        return label, not attributes.Visible or attributes.Mode.name == "Hidden" or not (layer is None or layer.Visible)
+        shown = layer is None or layer.Index in self._shown
+        return label, not attributes.Visible or attributes.Mode.name == "Hidden" or not shown
+
+
+def _shown_layers(layers: Iterable[RhinoObject]) -> set[int]:
+    """The indices of layers that are switched on, as are all that they lie below."""
+    by_id = {str(layer.Id): layer for layer in layers}
+    shown = set()
+    for layer in by_id.values():
+        above, seen = layer, set()
+        while above is not None and above.Visible and above.Index not in seen:
+            seen.add(above.Index)
+            above = by_id.get(str(above.ParentLayerId))
+        if above is None or above.Visible:
+            shown.add(layer.Index)
+    return shown
 
 
 def _matrix(transform: Any) -> Array:

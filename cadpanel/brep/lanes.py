@@ -75,6 +75,10 @@ class Lanes:
     outer: tuple[tuple[int, float], ...]
     joints: tuple[tuple[tuple[int, float], tuple[int, float]], ...] = ()
 
+    def edges(self, parts: Array) -> Array:
+        """(2, k, 3) points of the two long edges at (k,) parts of the way."""
+        return np.array([self.lanes[lane].border(side, parts) for lane, side in self.outer])
+
     def reach(self) -> Array:
         """(INTERVALS + 1,) mean length of the long edges up to even parts of the way, mm."""
         edges = []

@@ -152,8 +152,13 @@ def _walk_within(panel: RawPanel, tolerance: float) -> _Walk:
     return walk
 
 
+def least_edge(size: float) -> float:
+    """Edges no longer than this count as points on a panel of a size, mm."""
+    return min(TOUCH_TOLERANCE, TOUCH_PART * size)
+
+
 def _touch_tolerance(panel: RawPanel) -> float:
-    return min(TOUCH_TOLERANCE, TOUCH_PART * _size(panel))
+    return least_edge(_size(panel))
 
 
 def _size(panel: RawPanel) -> float:

@@ -1,6 +1,7 @@
 """Cuts that leave no panels are refused with the face or panel and a remedy, and the remedy works."""
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.model import compound_of, shapes_of
 from cadpanel.brep.split import area_of
-from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError
+from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError, SettingsError
 from tests.brep.test_subdivide import reference_of
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
@@ -54,7 +55,7 @@ GRIDS = [
     (DISC, (1, 1), "Panel 'S1-R01-C01'.* 0 corners .*: give a grid of other numbers, 2 or more each way", (2, 2)),
     (DISC, (1, 2), "Panel 'S1-R01-C01'.* 2 corners .*: give a grid of other numbers, 2 or more each way", (2, 2)),
     (HOLED, (1, 1), "Panel 'S1-R01-C01'.* 2 loops .*: give a grid of other numbers.*lines through every hole", (2, 2)),
-    (NEEDLE, (4, 2), "face 1 of 1 is only 1 mm wide, too narrow for a panel:.* cut the surface into fewer", None),
+    (NEEDLE, (4, 2), "would be 1 mm long, and corners closer than 2.5 mm .*: do not cut it that way", None),
 ]
 
 
@@ -66,6 +67,40 @@ def test_grids_that_leave_no_panels_are_refused_with_a_remedy_that_works(tmp_pat
         panels = reference_of(tmp_path, face, grid=remedy).panels
         assert len(panels) == remedy[0] * remedy[1]
         assert sum(panel.weights.sum() for panel in panels) == pytest.approx(area_of(face), rel=2e-3)
+
+
+CROWDED = [
+    # How many panels, of which some or all would be shorter than 2.5 mm, and what has room as the remedy asks for it.
+    ({"divide": 20_000}, "20000 panels along the surface .* would be 0.45 mm long,.* ask for 3240 or fewer", None),
+    ({"divide": 1_000_000}, "ask for 3240 or fewer, or give a smaller seam tolerance", None),
+    ({"divide": 20_000, "seam_tolerance": 0.1}, "closer than 1 mm cannot be told apart: ask for 8100 or fewer$", None),
+    ({"divide": 900, "seam_tolerance": 20.0}, "ask for 162 or fewer", {"divide": 162, "seam_tolerance": 20.0}),
+    ({"grid": (1, 20_000)}, "20000 panels along parameter v of face 1 of .* ask for 3240 or fewer", None),
+    ({"grid": (900, 1)}, "900 panels along parameter u of face 1 of .* ask for 179 or fewer", {"grid": (160, 1)}),
+]
+
+
+@pytest.mark.parametrize(("how", "sentence", "remedy"), CROWDED)
+def test_more_panels_than_there_is_room_for_are_refused_before_anything_is_cut(tmp_path, how, sentence, remedy):
+    began = time.perf_counter()
+    with pytest.raises(SettingsError, match=sentence):
+        reference_of(tmp_path, *strip_faces(STRAIGHT), **how)
+    assert time.perf_counter() - began < 10.0
+    if remedy is not None:
+        assert reference_of(tmp_path, *strip_faces(STRAIGHT), **remedy).panels
+
+
+@pytest.mark.parametrize("face", [TORUS, BALL], ids=["torus", "ball"])
+def test_more_panels_round_than_there_is_room_for_are_refused_before_anything_is_cut(tmp_path, face):
+    with pytest.raises(SettingsError, match=r"100000 panels along .* cannot be told apart: ask for"):
+        reference_of(tmp_path, face, grid=(100_000, 3))
+
+
+def test_a_ring_has_room_for_so_many_panels_and_no_more(tmp_path):
+    hoop = first_face(BRepPrimAPI_MakeCylinder(500.0, 300.0).Shape())
+    with pytest.raises(SettingsError, match=r"would be 0\.031 mm long,.* ask for 1130 or fewer"):
+        reference_of(tmp_path, hoop, divide=100_000)
+    assert len(reference_of(tmp_path, hoop, divide=100).seams) == 100
 
 
 def test_a_needle_is_a_strip_within_a_finer_tolerance(tmp_path):

@@ -18,6 +18,7 @@ from cadpanel.brep.patch import CLOSED, Patch, equal_parts, geometry, lengths_al
 from cadpanel.brep.ranges import parameter_range
 from cadpanel.brep.split_edges import split_along
 from cadpanel.brep.subdivide.panel import CutPanel, grid_name
+from cadpanel.brep.subdivide.room import require_room
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import By
 
@@ -29,14 +30,15 @@ AVERAGED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 OVER_THE_LINE = 1e-5
 
 
-def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str) -> tuple[CutPanel, ...]:
+def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str, tolerance: float) -> tuple[CutPanel, ...]:
     """Cut each face of a surface into a grid: rows follow u, columns v.
 
     A face that fills its parameter range is cut into exact rectangles of it; a trimmed one is split along the same
-    lines, and has panels only where it lies.
+    lines, and has panels only where it lies. Panels that meet may lie apart by the tolerance, mm.
 
     Raises:
         ReferenceFileError: a panel would be closed round, or the kernel cannot split a trimmed face.
+        SettingsError: a face has no room for so many panels.
     """
     panels: list[CutPanel] = []
     for face in surface.faces:
@@ -47,6 +49,8 @@ def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str) -> 
                 raise ReferenceFileError(
                     f"Face {face.number} of '{source}' {why}: cut it into {least} or more that way."
                 )
+            what = f"parameter {'uv'[axis]} of face {face.number} of '{source}'"
+            require_room(lengths_along(face.patch, axis, AVERAGED)[:, -1].tolist(), 0.0, count, what, tolerance)
         lines = [_lines(face.patch, axis, count, by) for axis, count in enumerate(counts)]
         cells = (
             _whole_cells(face.patch, lines)

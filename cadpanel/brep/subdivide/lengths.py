@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.lanes import find_lanes
 from cadpanel.brep.lip_band import lip_band
+from cadpanel.brep.patch import lengths_along
 from cadpanel.brep.planes import cut_by_planes
-from cadpanel.brep.ring import find_ring
+from cadpanel.brep.ring import ENDS, find_ring
 from cadpanel.brep.strip import find_strip
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
+from cadpanel.brep.subdivide.room import require_room
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.polyline import arc_length, norm
+
+Array = NDArray[np.float64]
+
+# Points of a long edge by which its length is measured.
+EDGE_POINTS = 257
 
 
 def cut_lip(
@@ -44,7 +53,9 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
 
     Raises:
         ReferenceFileError: the surface is no strip, or cannot be cut.
+        SettingsError: it has no room for so many panels.
     """
+    what = f"the surface of {surface.numbers} of '{source}'"
     lanes = find_lanes(surface)
     parts = np.linspace(0.0, 1.0, count + 1)
     if lanes is None or not lanes.outer:
@@ -52,19 +63,27 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
         if ring is not None and ring.length >= ring.width:
             if count == 1:
                 raise ReferenceFileError(
-                    f"The surface of {surface.numbers} of '{source}' closes to a ring, and a panel cannot go round: "
-                    "divide it into 2 or more."
+                    f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into 2 or more."
                 )
+            around = sum(float(lengths_along(link.lane.patch, link.around, ENDS)[:, -1].max()) for link in ring.links)
+            require_room([around], 0.0, count, what, tolerance)
             return along_panels(surface.name, ring.cut(count, tolerance))
         if ring is not None or lanes is not None:
             raise ReferenceFileError(
-                f"The surface of {surface.numbers} of '{source}' is closed round its length, and a panel cannot go "
-                "round: cut it both ways, with a grid."
+                f"T{what[1:]} is closed round its length, and a panel cannot go round: cut it both ways, with a grid."
             )
     if lanes is not None:
+        _require_room(lanes.edges(np.linspace(0.0, 1.0, EDGE_POINTS)), count, what, tolerance)
         parts[1:-1] = lanes.at_lengths(parts[1:-1])
         return along_panels(surface.name, lanes.cut(parts))
     strip = find_strip(surface, source, tolerance)
+    _require_room(np.array(strip.edges), count, what, tolerance)
     if count == 1:
         return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
     return along_panels(surface.name, cut_by_planes(surface, strip.planes(parts[1:-1]), source))
+
+
+def _require_room(edges: Array, count: int, what: str, tolerance: float) -> None:
+    """Refuse more panels than there is room for between two long edges, (2, q, 3) points."""
+    lengths = [float(arc_length(edge)[-1]) for edge in edges]
+    require_room(lengths, float(norm(edges[1] - edges[0]).min()), count, what, tolerance)

@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cadpanel.brep.connect import Surface, levels
 from cadpanel.brep.lanes import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
-from cadpanel.brep.patch import equal_parts
+from cadpanel.brep.patch import equal_parts, lengths_along
 from cadpanel.reference.polyline import cross
 
 Array = NDArray[np.float64]
@@ -37,6 +37,14 @@ class Ring:
     def length(self) -> float:
         """Of the way round, in the mean of the two edges, mm."""
         return sum(float(column.reach()[-1]) for column in self.columns)
+
+    @property
+    def longest(self) -> float:
+        """Of the longest way round along a border of its faces, mm."""
+        return sum(
+            max(float(lengths_along(lane.patch, lane.axis, ENDS)[:, -1].max()) for lane in column.lanes)
+            for column in self.columns
+        )
 
     @property
     def width(self) -> float:

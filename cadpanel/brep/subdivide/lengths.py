@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.lanes import find_lanes
 from cadpanel.brep.lip_band import lip_band
-from cadpanel.brep.patch import lengths_along
 from cadpanel.brep.planes import cut_by_planes
-from cadpanel.brep.ring import ENDS, find_ring
+from cadpanel.brep.ring import find_ring
 from cadpanel.brep.strip import find_strip
 from cadpanel.brep.subdivide.panel import CutPanel, along_panels
 from cadpanel.brep.subdivide.room import require_room
@@ -65,8 +64,7 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
                 raise ReferenceFileError(
                     f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into 2 or more."
                 )
-            around = sum(float(lengths_along(link.lane.patch, link.around, ENDS)[:, -1].max()) for link in ring.links)
-            require_room([around], 0.0, count, what, tolerance)
+            require_room([ring.longest], 0.0, count, what, tolerance)
             return along_panels(surface.name, ring.cut(count, tolerance))
         if ring is not None or lanes is not None:
             raise ReferenceFileError(

@@ -172,7 +172,7 @@ def test_inside_an_outline_is_where_a_ray_leaves_it_an_odd_number_of_times(seed,
 def split(polygon, point, angle):
     """A convex polygon, (n, 2), parted by a line."""
     heights = (polygon - point) @ [-np.sin(angle), np.cos(angle)]
-    halves = [[], []]
+    halves: list[list[np.ndarray]] = [[], []]
     for one, other, high, low in zip(polygon, np.roll(polygon, -1, axis=0), heights, np.roll(heights, -1), strict=True):
         halves[int(high > 0.0)].append(one)
         if (high > 0.0) != (low > 0.0):

@@ -37,10 +37,10 @@ FEWEST_ALONG, FEW_SPANS, ALONG_ARC = 8, 4, 24
 FEWEST_ACROSS, ACROSS_A_SPAN, MOST_ACROSS = 4, 2, 32
 EVEN = (GeomAbs_Plane, GeomAbs_Cylinder)
 # Gauss points each way over each span of a whole face, more and more until two areas agree to within this part, or a
-# face had more points than so many.
+# face would have more points than so many.
 OVER_SPAN = (3, 6, 12, 24)
-AGREE = 1e-6
-MOST_POINTS = 1_000_000
+AGREE = 1e-5
+MOST_POINTS = 500_000
 # About so many points of whole faces are evaluated at once.
 AT_ONCE = 100_000
 

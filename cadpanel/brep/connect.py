@@ -129,16 +129,18 @@ def _notes(
     if gaping:
         widest = max(gaping, key=lambda contact: contact.gap)
         first, second = (faces[index].number for index in widest.faces)
+        many = f"{len(gaping)} edges between faces of '{source}' gape, the widest"
+        if len(gaping) == 1:
+            many = f"An edge between faces of '{source}' gapes,"
         notes.append(
-            f"{len(gaping)} edges between faces of '{source}' gape, the widest by {widest.gap:.2g} mm between faces "
-            f"{first} and {second}; that is within the tolerance of {tolerance:g} mm."
+            f"{many} by {widest.gap:.2g} mm between faces {first} and {second}; that is within the tolerance of {tolerance:g} mm."
         )
     folded = {contact.faces: contact.fold for contact in touching if contact.fold > most_fold}
     if most_fold < KNIFE_EDGE and folded:
-        notes.append(
-            f"{len(folded)} pairs of faces of '{source}' meet in a crease of more than {most_fold:g} degrees: they "
-            "count as different surfaces here."
+        pairs = (
+            f"{len(folded)} pairs of faces of '{source}' meet" if len(folded) > 1 else f"Two faces of '{source}' meet"
         )
+        notes.append(f"{pairs} in a crease of more than {most_fold:g} degrees: they count as different surfaces here.")
         return tuple(notes)
     for (one, other), fold in sorted(folded.items()):
         notes.append(

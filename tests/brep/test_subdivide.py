@@ -270,7 +270,7 @@ def test_gap_within_the_tolerance_is_noted_and_a_wider_one_parts_the_strip():
 
     panels, notes = cut(model_of(*lifted(0.4)), divide=3)
     assert [len(panel.faces) for panel in panels] == [3, 3, 3]
-    assert any("1 edges between faces of 'roof.step' gape, the widest by 0.4 mm" in note for note in notes)
+    assert any("An edge between faces of 'roof.step' gapes, by 0.4 mm" in note for note in notes)
     panels, notes = cut(model_of(*lifted(1.5)), divide=3)
     assert sorted(len(panel.faces) for panel in panels) == [1, 1, 1, 2, 2, 2]
     assert notes == ()
@@ -292,7 +292,7 @@ def test_gap_along_curved_edges_is_told_as_it_is(radius, gap, joined):
     assert [panel.name for panel in panels] == whole
     assert notes == (
         (
-            f"1 edges between faces of 'roof.step' gape, the widest by {gap:.2g} mm between faces 1 and 2; that is "
+            f"An edge between faces of 'roof.step' gapes, by {gap:.2g} mm between faces 1 and 2; that is "
             "within the tolerance of 1 mm.",
         )
         if joined

@@ -93,7 +93,7 @@ def test_lips_of_different_surfaces_are_apart_at_a_crease(tmp_path):
     upright = kernel_face(lambda u, v: np.stack([1000.0 * v, 0.0 * u, 500.0 * u], axis=-1), (0.0, 1.0))
     found = surveyed(tmp_path, first, upright)
     assert len(found.surfaces) == 2
-    assert any("1 pairs of faces of 'model.brep' meet in a crease of more than 30 degrees" in n for n in found.notes)
+    assert any("Two faces of 'model.brep' meet in a crease of more than 30 degrees" in n for n in found.notes)
 
 
 def test_names_layers_colors_and_curves_are_listed(tmp_path):

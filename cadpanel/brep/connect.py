@@ -133,7 +133,8 @@ def _notes(
         if len(gaping) == 1:
             many = f"An edge between faces of '{source}' gapes,"
         notes.append(
-            f"{many} by {widest.gap:.2g} mm between faces {first} and {second}; that is within the tolerance of {tolerance:g} mm."
+            f"{many} by {widest.gap:.2g} mm between faces {first} and {second}; that is within the tolerance of "
+            f"{tolerance:g} mm."
         )
     folded = {contact.faces: contact.fold for contact in touching if contact.fold > most_fold}
     if most_fold < KNIFE_EDGE and folded:

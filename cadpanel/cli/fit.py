@@ -49,7 +49,7 @@ def fit(
     divide: options.Divide = None,
     lip: options.LipBand = None,
     grid: options.Grid = None,
-    by: options.GridBy = "length",
+    by: options.GridBy = None,
     stations: options.Stations = None,
     spine: options.Spine = None,
     network: options.Network = None,

@@ -22,7 +22,23 @@ ReferenceFile = Annotated[
         help="STEP, IGES, .brep or .3dm file; each product in it is one panel's faces, unless it is to be cut.",
     ),
 ]
-Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write, whole or not at all.")]
+
+
+def folder_named(text: str) -> Path:
+    """The folder that a name stands for; the empty one would be the folder that the command runs in.
+
+    Raises:
+        SettingsError: the name is empty.
+    """
+    if not text.strip():
+        raise SettingsError("--out is the name of the folder to write, not ''")
+    return Path(text)
+
+
+Out = Annotated[
+    Path,
+    typer.Option("--out", metavar="DIR", parser=folder_named, help="Folder to write, whole or not at all."),
+]
 FeatureOption = Annotated[
     str,
     typer.Option("--feature", metavar="NAME", help="Shape of a panel, one of those that 'cadpanel features' lists."),
@@ -97,7 +113,10 @@ LipBand = Annotated[
 Grid = Annotated[
     str | None, typer.Option("--grid", metavar="UxV", help="Cut each surface into so many by so many panels.")
 ]
-GridBy = Annotated[By, typer.Option("--by", help="Are the grid's parts equal in length or in parameter?")]
+GridBy = Annotated[
+    By | None,
+    typer.Option("--by", help="Are the grid's parts equal in length or in parameter? In length if not given."),
+]
 Stations = Annotated[
     str | None, typer.Option("--stations", metavar="MM,MM,...", help="Cut by planes at these lengths along the strip.")
 ]
@@ -172,7 +191,7 @@ def reference_settings(
     divide: int | None,
     lip: float | None,
     grid: str | None,
-    by: By,
+    by: By | None,
     stations: str | None,
     spine: Path | None,
     network: Path | None,

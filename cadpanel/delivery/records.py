@@ -24,10 +24,11 @@ from cadpanel.delivery.report import (
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.delivery.summary import summary
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.blend import Blend
 from cadpanel.fitting.measures import Measures
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.stretches import taken
+from cadpanel.fitting.stretches import missed_blend, taken
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -101,12 +102,13 @@ def baselines_record(result: FitResult) -> BaselinesModel:
 def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[PanelModel, ...]:
     """Every panel as it was fitted and built."""
     return tuple(
-        _panel(result.measures, index, reference, panel)
+        _panel(result, index, reference, panel)
         for index, (reference, panel) in enumerate(zip(result.reference.panels, built, strict=True))
     )
 
 
-def _panel(measures: Measures, index: int, reference: PanelReference, built: PanelSheet) -> PanelModel:
+def _panel(result: FitResult, index: int, reference: PanelReference, built: PanelSheet) -> PanelModel:
+    measures = result.measures
     return PanelModel(
         name=built.shape.name,
         feature=built.shape.feature,
@@ -122,7 +124,22 @@ def _panel(measures: Measures, index: int, reference: PanelReference, built: Pan
         patches=patch_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
         moved=built.moved,
-        notes=(*built.notes, *_outline_note(measures, index)),
+        notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
+    )
+
+
+def _blend_note(reference: PanelReference, built: PanelSheet, blends: Sequence[Blend]) -> tuple[str, ...]:
+    """What to say of a panel whose bend is not where it was told to be."""
+    missed = missed_blend(reference, built.shape, blends)
+    if missed is None:
+        return ()
+    # The same on both ends is said once.
+    asked, became = (
+        " and ".join(dict.fromkeys(f"{first:.0f}-{last:.0f}" for first, last in places.tolist())) for places in missed
+    )
+    return (
+        f"Its bend was to be made of {asked} mm along its ends, and reaches over {became} mm: the drawing there does "
+        "not bend like that.",
     )
 
 

@@ -130,7 +130,7 @@ class PanelModel(Record):
         taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
             along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
-        notes: what the fabricator should know, one sentence each.
+        notes: what the fabricator should know, one sentence each; also of a bend that is not where it was told to be.
     """
 
     name: str

@@ -13,7 +13,7 @@ from cadpanel.features.catalogue import PanelFeature
 from cadpanel.features.feature import Feature
 from cadpanel.fitting.blend import Blend
 from cadpanel.fitting.profile import curved_runs
-from cadpanel.geometry.shape import AnyShape, PanelShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.polyline import arc_length, interpolate
 
@@ -22,6 +22,8 @@ IntArray = NDArray[np.intp]
 
 # Lines across which a panel is walked from side to side, in each of the three stretches.
 LINES = 17
+# A blend is missed where a curved patch begins or ends farther from it than this part of its width.
+MISSED = 0.2
 
 
 def taken(panel: PanelReference, shape: AnyShape) -> Array:
@@ -64,6 +66,21 @@ def stretches(panels: Sequence[PanelReference], blends: Sequence[Blend]) -> Arra
                 f"{widths[0]:.6g} and {widths[1]:.6g} mm long"
             )
     return found
+
+
+def missed_blend(panel: PanelReference, shape: AnyShape, blends: Sequence[Blend]) -> tuple[Array, Array] | None:
+    """Where a panel's curved patches were told to begin and end and where they do, each (2, 2) as in `stretches`.
+
+    None where nothing was told, or all comes within MISSED of the stretch's width. A blend says which part of the
+    drawing the curved patches are held to: where their rulings end is for the fit.
+    """
+    (asked,) = stretches([panel], blends)
+    if np.isnan(asked).any() or not isinstance(shape, PanelShape):
+        return None
+    ((start, stop),) = curved_runs([isinstance(patch, ConePatch) for patch in shape.patches])
+    became = taken(panel, shape)[:, [start, stop]]
+    near = np.abs(became - asked) <= MISSED * np.diff(asked, axis=1)
+    return None if near.all() else (asked, became)
 
 
 def check_blends(reference: Reference, features: Sequence[PanelFeature], blends: Sequence[Blend]) -> None:

@@ -233,7 +233,7 @@ def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, toleranc
             source,
             f"its outline has {len(corners)} corners{f' (at {places})' if places else ''} where a panel has "
             f"{FEWEST_CORNERS} or more",
-            "trim it to edges that meet in corners",
+            "trim it to edges that meet in corners, or cut it with a grid",
         )
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]

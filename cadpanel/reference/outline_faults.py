@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 
 from cadpanel.errors import OutlineError, PanelError
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_lengths, distances_to_polylines
+from cadpanel.reference.polyline import arc_lengths, cross, distances_to_polylines
 from cadpanel.reference.touching import Edge
 
 Array = NDArray[np.float64]
 
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6
+# Where every loop of an outline turns by less than this in the surface, radians, the surface is closed round like a
+# tube, and has no hole.
+ROUND = np.pi
 
 
 def check_faces(panel: RawPanel, source: str) -> None:
@@ -70,13 +73,19 @@ def check_loops(
         raise OutlineError(panel.name, source, fault, "join the faces, or export them as panels of their own")
     if not free:
         fault = "it is a closed surface without an outline"
-        raise OutlineError(panel.name, source, fault, "export an open sheet of four sides")
+        raise OutlineError(panel.name, source, fault, "export an open sheet of four sides, or cut it with a grid")
     if loose:
         x, y, z = loose[0]
+        if count == 1:
+            fault = f"its outline comes within {tolerance:.2g} mm of itself at ({x:.1f}, {y:.1f}, {z:.1f})"
+            raise OutlineError(panel.name, source, fault, "widen the slit there, or cut it with a grid across the slit")
         fault = f"its outline is not closed or branches at ({x:.1f}, {y:.1f}, {z:.1f})"
         raise OutlineError(panel.name, source, fault, "join its faces along whole edges and export again")
     if len(loops) > 1:
         fault = f"its outline has {len(loops)} loops where a panel has one"
+        if all(abs(_turn_round(loop, signs)) < ROUND for loop in loops):
+            closed = f"it is closed round, {fault}"
+            raise OutlineError(panel.name, source, closed, "cut it with a grid, or divide it round, into 2 or more")
         raise OutlineError(panel.name, source, fault, "close its holes, trim faces that overlap, and export again")
 
 
@@ -89,6 +98,16 @@ def _measures(panel: RawPanel) -> list[tuple[float, float]]:
     """Area (mm^2) of each face, and how long its boundary is (mm)."""
     lengths = iter(arc_lengths([points for face in panel.faces for points in face.edges]))
     return [(float(face.weights.sum()), sum(float(next(lengths)[-1]) for _ in face.edges)) for face in panel.faces]
+
+
+def _turn_round(loop: Sequence[Edge], signs: dict[int, float]) -> float:
+    """By how much a closed loop turns in its surface, radians: about a hole a whole turn, round a tube 0."""
+    points = np.concatenate([edge.points[:-1] for edge in loop])
+    normals = np.concatenate([signs[edge.face] * edge.normals[:-1] for edge in loop])
+    steps = np.roll(points, -1, axis=0) - points
+    before = np.roll(steps, 1, axis=0)
+    about = np.sum(cross(before, steps) * normals, axis=1)
+    return float(np.arctan2(about, np.sum(before * steps, axis=1)).sum())
 
 
 def _gap(panel: RawPanel, connected: dict[int, float]) -> float:

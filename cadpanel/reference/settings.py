@@ -41,7 +41,7 @@ class ReferenceSettings:
         divide: cut each strip into so many panels of equal length.
         lip: with `divide`, keep only a band of this width about the strip's lip, measured along the surface, mm.
         grid: cut each surface into so many by so many panels along its two parameters.
-        by: are the parts of a grid equal in length or in parameter?
+        by: are the parts of a grid equal in length or in parameter? In length if None.
         stations: cut by planes at these lengths along the strip or the spine, mm.
         spine: a file with the curve along which the stations are measured; the middle of the strip if None.
         network: a file with curves that cut the surface; the reference itself if its own loose curves do.
@@ -55,7 +55,7 @@ class ReferenceSettings:
     divide: int | None = None
     lip: float | None = None
     grid: tuple[int, int] | None = None
-    by: By = "length"
+    by: By | None = None
     stations: tuple[float, ...] | None = None
     spine: Path | None = None
     network: Path | None = None
@@ -72,7 +72,7 @@ class ReferenceSettings:
             raise SettingsError(f"The seam tolerance must be a positive length in mm, not {self.seam_tolerance!r}.")
         if self.unit is not None and str(self.unit) not in MILLIMETRES:
             raise SettingsError(f"there is no unit '{self.unit}'; choose one of: {', '.join(MILLIMETRES)}")
-        if self.by not in get_args(By):
+        if self.by is not None and self.by not in get_args(By):
             raise SettingsError(f"a grid is cut by length or by parameter, not by {self.by!r}")
         for name in ("spine", "network", "mesh"):
             given = getattr(self, name)
@@ -90,7 +90,7 @@ class ReferenceSettings:
                 raise SettingsError(f"the band about a lip must have a positive width in mm, not {self.lip!r}")
             if self.divide is None:
                 raise SettingsError("a band about the lip is divided along its length: give the number of panels, too")
-        if self.by != "length" and self.grid is None:
+        if self.by is not None and self.grid is None:
             raise SettingsError("'by' says how a grid is cut: give a grid, too")
         if not _is_switch(self.junctions):
             raise SettingsError(f"'junctions' is yes or no, True or False, not {self.junctions!r}")

@@ -189,6 +189,22 @@ def test_planes_that_leave_rings_are_refused_with_another_way_to_cut(tmp_path, f
     assert len(reference_of(tmp_path, face, grid=(3, 2)).panels) == 6
 
 
+def test_a_ready_made_tube_is_said_to_be_closed_round_and_a_grid_cuts_it(tmp_path):
+    said = "it is closed round, its outline has 2 loops where a panel has one: cut it with a grid"
+    with pytest.raises(PanelError, match=said):
+        reference_of(tmp_path, TUBE)
+    assert len(reference_of(tmp_path, TUBE, grid=(2, 1)).panels) == 2
+
+
+def test_a_ready_made_tube_with_a_slit_is_told_where_it_nearly_meets_itself(tmp_path):
+    slit = BRepPrimAPI_MakeCylinder(500.0, 3000.0, 2.0 * math.pi - 0.001).Shape()
+    with pytest.raises(
+        PanelError, match=r"comes within 1 mm of itself at \(500.0, .*: widen the slit there, or cut it"
+    ):
+        reference_of(tmp_path, first_face(slit))
+    assert len(reference_of(tmp_path, first_face(slit), grid=(2, 1)).panels) == 2
+
+
 def test_a_panel_without_an_outline_in_the_file_itself_keeps_its_own_remedy(tmp_path):
     with pytest.raises(PanelError, match="its outline has 2 loops where a panel has one: close its holes, trim"):
         reference_of(tmp_path, HOLED)

@@ -67,6 +67,8 @@ def test_bricks_of_a_mesh_meet_part_by_part(run: Run, tmp_path: Path) -> None:
         (("--grid", "2x2", "--network", "lines.step"), "choose one of them"),
         (("--stations", "a,b"), "--stations are lengths in mm"),
         (("--by", "parameter"), "give a grid, too"),
+        (("--by", "length"), "give a grid, too"),
+        (("--divide", "2", "--by", "length"), "give a grid, too"),
         (("--lip", "300"), "give the number of panels, too"),
         (("--unit", "ell"), "there is no unit 'ell'"),
         (("--divide", "2", "--faces", "9"), "has no face '9': it has faces 1 to 3"),
@@ -86,6 +88,14 @@ def test_options_that_contradict_each_other_or_the_file_are_refused(
     assert answer.is_one_sentence(), answer.err
     assert sentence.lower() in answer.err.lower()
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("command", ["fit", "compare"])
+def test_a_folder_without_a_name_is_refused(run: Run, strip: Path, command: str) -> None:
+    answer = run(command, strip, "--out", "")
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert "--out is the name of the folder to write, not ''" in answer.err
 
 
 def test_spine_of_another_file_carries_the_stations(run: Run, tmp_path: Path) -> None:

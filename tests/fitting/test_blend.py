@@ -1,5 +1,7 @@
 """What was taken for which patch, and the user's word on it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ import cadpanel as cp
 from cadpanel.fitting.blend import Blend, blends_of
 from cadpanel.fitting.result import fit
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.stretches import taken
+from cadpanel.fitting.stretches import missed_blend, taken
 from cadpanel.geometry.shape import ConePatch
 from cadpanel.reference.polyline import arc_length
 from tests.instances import random_polygon
@@ -102,6 +104,32 @@ def test_the_bend_goes_where_it_is_told_to(shape):
     assert isinstance(known, ConePatch)
     assert cone.radius > known.radius
     assert told.measures.overall_rms > 100.0 * RECOVERED
+
+
+@settings(max_examples=5, deadline=None)
+@given(shape=bends, grown=st.floats(0.0, 0.15), aside=st.floats(0.3, 0.9))
+def test_a_bend_that_is_not_where_it_was_told_to_be_is_told(shape, grown, aside):
+    panel, own = sampled(shape, shape.name), own_blend(shape)
+    width = own.last - own.first
+    near = Blend(first=own.first - grown * width, last=own.last + grown * width)
+    assert missed_blend(panel, shape, (near,)) is None
+    assert missed_blend(panel, shape, ()) is None
+    assert missed_blend(panel, shape, (replace(own, panel="another"),)) is None
+    # Beside the bend, over a part of the flange before it.
+    told = Blend(first=0.05 * own.first, last=aside * own.first)
+    missed = missed_blend(panel, shape, (told,))
+    assert missed is not None
+    assert missed[0] == pytest.approx(np.array([[told.first, told.last]] * 2))
+    assert missed[1] == pytest.approx(np.array([[own.first, own.last]] * 2), abs=2.0 * RECOVERED)
+
+
+def test_a_delivery_says_which_panels_bend_elsewhere_than_they_were_told_to(tmp_path):
+    shape = folded_panel(radius=300.0, sweep=1.5, widths=(400.0, 400.0))
+    for first, last, said in ((400.0, 850.0, 0), (700.0, 1000.0, 1)):
+        result = cp.fit(alone(shape), method="local", blend=f"{first:g}-{last:g}")
+        (panel,) = cp.deliver(result, tmp_path / f"{first:g}").panels
+        notes = [note for note in panel.notes if note.startswith("Its bend was to be made of")]
+        assert len(notes) == said
 
 
 def own_blend(shape):

@@ -129,11 +129,11 @@ def test_a_zed_whose_bends_cancel_knows_its_ends(degrees, taper, twist):
 
 
 @pytest.mark.parametrize(("degrees", "refused"), [(170.0, False), (180.0, True), (200.0, True)])
-def test_what_goes_round_by_half_a_turn_is_divided(degrees, refused):
+def test_what_goes_round_by_half_a_turn_is_to_be_cut_along_its_bend(degrees, refused):
     if not refused:
         as_fold(vault(degrees), flanged=False)
         return
-    with pytest.raises(PanelError, match=r"one roll or fold reaches round 174: divide it further"):
+    with pytest.raises(PanelError, match=r"one roll or fold reaches round 174: cut it along its bend"):
         as_fold(vault(degrees), flanged=False)
 
 

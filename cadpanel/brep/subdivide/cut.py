@@ -87,7 +87,7 @@ def _lengths(skin: _Skin) -> Cut:
 
 
 def _grid(skin: _Skin) -> Cut:
-    counts, by = skin.settings.grid or (1, 1), skin.settings.by
+    counts, by = skin.settings.grid or (1, 1), skin.settings.by or "length"
     source, tolerance = skin.model.source, skin.settings.seam_tolerance
     cut = [cut_grid(surface, counts, by, source, tolerance) for surface in skin.surfaces]
     return Cut(panels=tuple(panel for panels in cut for panel in panels))

@@ -75,7 +75,7 @@ def check_fold(panel: PanelReference, source: str, *, flanged: bool, folds: int)
         raise PanelError(
             panel.name,
             f"in '{source}', it turns by {across:.0f} degrees, and one roll or fold reaches round {MOST_TURN:g}: "
-            "cut it along its bend, too (--grid or --network), or keep a narrower band about the bend (--lip).",
+            "cut it along its bend, too (--grid or --network), or keep a band narrower than the bend (--lip).",
         )
     both_ways = turns < least or along / turns * np.sqrt(turning.slenderness) > MOST_DOUBLE_CURVATURE
     if both_ways and (flanged or along > GENTLE):

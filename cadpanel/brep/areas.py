@@ -120,11 +120,16 @@ def spans_of(surface: BRepAdaptor_Surface) -> tuple[int, int]:
     return int(surface.NbUIntervals(GeomAbs_CN)), int(surface.NbVIntervals(GeomAbs_CN))
 
 
-def _rule(surface: BRepAdaptor_Surface, axis: int, count: int) -> tuple[Array, Array]:
-    """Places along a parameter and the weights by which what is measured there adds up to an integral."""
+def breaks_of(surface: BRepAdaptor_Surface, axis: int) -> Array:
+    """The ends of a surface's smooth pieces along u (0) or v (1), rising parameters."""
     found = TColStd_Array1OfReal(1, spans_of(surface)[axis] + 1)
     (surface.UIntervals if axis == 0 else surface.VIntervals)(found, GeomAbs_CN)
-    breaks = np.array([found.Value(place) for place in range(1, found.Length() + 1)])
+    return np.array([found.Value(place) for place in range(1, found.Length() + 1)])
+
+
+def _rule(surface: BRepAdaptor_Surface, axis: int, count: int) -> tuple[Array, Array]:
+    """Places along a parameter and the weights by which what is measured there adds up to an integral."""
+    breaks = breaks_of(surface, axis)
     nodes, weights = _gauss(count)
     halves = 0.5 * np.diff(breaks)[:, None]
     return (breaks[:-1, None] + halves * (1.0 + nodes)).ravel(), (halves * weights).ravel()

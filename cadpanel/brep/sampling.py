@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +18,20 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
-from cadpanel.brep.areas import spans_of, trimmed_areas, whole_areas
+from cadpanel.brep.areas import breaks_of, spans_of, trimmed_areas, whole_areas
 from cadpanel.brep.boundary import Edge, sample_edges, unit_normals
+from cadpanel.brep.strides import (
+    Strides,
+    are_uneven,
+    even_lines,
+    laid_anew,
+    lines_by_spans,
+    measure_chords,
+    measure_strides,
+    summed,
+)
 from cadpanel.brep.surface_batch import Indices, SurfaceBatch
 from cadpanel.reference.model import FaceSamples
-from cadpanel.reference.polyline import cross, norm
 
 Array = NDArray[np.float64]
 
@@ -34,6 +42,9 @@ MEASURING_GRID = 5
 # Where the speed along the lines changes by more than this factor, the face is measured again on a finer grid.
 SPEED_RATIO = 1.5
 FINE_MEASURING_GRID = 25
+# Where it still does by more than this factor, the fine grid's lines are laid anew, evenly by length, so many times.
+WILD_RATIO = 4.0
+LAID_ANEW = 4
 # How closely a boundary must follow the border of the parameter range for the face to count as untrimmed,
 # as a part of that range.
 BORDER = 1e-6
@@ -56,8 +67,9 @@ class _MeasuredFaces:
         surfaces: the same, evaluated together.
         sides: (F,) -1 where a face is reversed against its surface, else 1.
         bounds: (F, 2, 2) least and largest parameter, by u and v.
+        lines: two times (F, FINE_MEASURING_GRID + 1): rising parts of the parameter range, from 0 to 1.
         reach: two times (F, FINE_MEASURING_GRID + 1): the length walked along u (and v) on the surface up to each of
-            as many even steps, mm.
+            these lines, mm.
         edges: their boundaries.
         trimmed: (F,) whether the boundary cuts into the parameter range.
         areas: (F,) mm^2.
@@ -69,6 +81,7 @@ class _MeasuredFaces:
     surfaces: SurfaceBatch
     sides: Array
     bounds: Array
+    lines: tuple[Array, Array]
     reach: tuple[Array, Array]
     edges: list[list[Edge]]
     trimmed: NDArray[np.bool_]
@@ -117,14 +130,7 @@ def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
         [[[on.FirstUParameter(), on.LastUParameter()], [on.FirstVParameter(), on.LastVParameter()]] for on in adaptors]
     )
     edges = sample_edges(faces, surfaces, bounds, sides)
-    everyone = np.arange(len(faces))
-    coarse = _measure_ranges(surfaces, everyone, bounds, MEASURING_GRID)
-    uneven = np.zeros(len(faces), dtype=bool)
-    for speeds in coarse.speeds:
-        uneven |= speeds.max(axis=1) > SPEED_RATIO * speeds.min(axis=1)
-    fine = _measure_ranges(surfaces, everyone[uneven], bounds[uneven], FINE_MEASURING_GRID)
-    full_areas = coarse.areas
-    full_areas[uneven] = fine.areas
+    lines, steps, full_areas = _walk(surfaces, adaptors, bounds)
     trimmed = _are_trimmed(edges, bounds)
     areas = full_areas.copy()
     cut = np.flatnonzero(trimmed)
@@ -135,7 +141,8 @@ def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
         surfaces=surfaces,
         sides=sides,
         bounds=bounds,
-        reach=(_reach(coarse, fine, uneven, 0), _reach(coarse, fine, uneven, 1)),
+        lines=lines,
+        reach=(summed(steps[0]), summed(steps[1])),
         edges=edges,
         trimmed=trimmed,
         areas=areas,
@@ -143,31 +150,44 @@ def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:
     )
 
 
-class _Range(NamedTuple):
-    """Two times (F, k) lengths of the steps along u (and v) on the surface, mm; and (F,) areas, mm^2."""
+def _walk(
+    surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], bounds: Array
+) -> tuple[tuple[Array, Array], tuple[Array, Array], Array]:
+    """Lines across whole parameter ranges of F faces, the lengths of the steps between them, and the areas, mm^2.
 
-    speeds: tuple[Array, Array]
-    areas: Array
-
-
-def _measure_ranges(surfaces: SurfaceBatch, faces: Indices, bounds: Array, lines: int) -> _Range:
-    """Measure whole parameter ranges by the middles of `lines` even steps each way."""
-    middles = (np.arange(lines) + 0.5) / lines
-    parts = np.stack([np.repeat(middles, lines), np.tile(middles, lines)], axis=-1)
-    spans = bounds[:, :, 1] - bounds[:, :, 0]
-    _, along_u, along_v = surfaces.evaluate(faces[:, None], bounds[:, None, :, 0] + parts * spans[:, None])
-    steps = spans / lines
-    speeds_u = steps[:, :1] * norm(along_u).reshape(-1, lines, lines).mean(axis=2)
-    speeds_v = steps[:, 1:] * norm(along_v).reshape(-1, lines, lines).mean(axis=1)
-    return _Range((speeds_u, speeds_v), norm(cross(along_u, along_v)).sum(axis=1) * steps.prod(axis=1))
-
-
-def _reach(coarse: _Range, fine: _Range, uneven: NDArray[np.bool_], way: int) -> Array:
-    """(F, FINE_MEASURING_GRID + 1) lengths walked; the steps of the coarse grid are cut into equal parts."""
+    Returns:
+        Two times (F, FINE_MEASURING_GRID + 1) lines as in `_MeasuredFaces`, two times (F, FINE_MEASURING_GRID) lengths,
+        mm, and (F,) areas.
+    """
+    coarse = measure_strides(surfaces, np.arange(len(adaptors)), bounds, even_lines(len(adaptors), MEASURING_GRID))
+    # The steps of the coarse grid are cut into equal parts.
     parts = FINE_MEASURING_GRID // MEASURING_GRID
-    steps = np.repeat(coarse.speeds[way] / parts, parts, axis=1)
-    steps[uneven] = fine.speeds[way]
-    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)
+    steps_u, steps_v = (np.repeat(speeds / parts, parts, axis=1) for speeds in coarse.speeds)
+    lines, steps, areas = even_lines(len(adaptors), FINE_MEASURING_GRID), (steps_u, steps_v), coarse.areas
+
+    def take(chosen: Indices, found: Strides) -> None:
+        areas[chosen] = found.areas
+        for way in (0, 1):
+            steps[way][chosen] = found.speeds[way]
+
+    chosen = np.flatnonzero(are_uneven(coarse, SPEED_RATIO))
+    fine = measure_strides(surfaces, chosen, bounds[chosen], (lines[0][chosen], lines[1][chosen]))
+    take(chosen, fine)
+    wild = chosen[are_uneven(fine, WILD_RATIO)]
+    for attempt in range(LAID_ANEW):
+        if not len(wild):
+            break
+        for way in (0, 1):
+            # A spline's knots lie closer where it is fast, mostly.
+            lines[way][wild] = (
+                laid_anew(lines[way][wild], steps[way][wild])
+                if attempt
+                else [lines_by_spans(breaks_of(adaptors[face], way), FINE_MEASURING_GRID) for face in wild.tolist()]
+            )
+        found = measure_chords(surfaces, wild, bounds[wild], (lines[0][wild], lines[1][wild]))
+        take(wild, found)
+        wild = wild[are_uneven(found, WILD_RATIO)]
+    return lines, steps, areas
 
 
 def _are_trimmed(edges: list[list[Edge]], bounds: Array) -> NDArray[np.bool_]:
@@ -191,7 +211,7 @@ def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
     rank_u, rank_v = np.divmod(place, counts[owners, 1])
     middles, widths = np.empty((len(owners), 2)), np.empty((len(owners), 2))
     for way, rank in enumerate((rank_u, rank_v)):
-        low, high = (_even_border(measured.reach[way], owners, (rank + k) / counts[owners, way]) for k in range(2))
+        low, high = (_even_border(measured, way, owners, (rank + k) / counts[owners, way]) for k in range(2))
         middles[:, way], widths[:, way] = 0.5 * (low + high), high - low
     spans = measured.bounds[:, :, 1] - measured.bounds[:, :, 0]
     parameters = measured.bounds[owners, :, 0] + middles * spans[owners]
@@ -252,21 +272,24 @@ def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> NDArray[np.intp]:
     return np.stack([count_u, count_v], axis=1).astype(np.intp)
 
 
-def _even_border(reach: Array, owners: Indices, parts: Array) -> Array:
+def _even_border(measured: _MeasuredFaces, way: int, owners: Indices, parts: Array) -> Array:
     """Return the parts of their parameter ranges up to which (p,) faces have been walked to `parts` of their length.
 
     Args:
-        reach: (F, k + 1) as in `_MeasuredFaces`.
+        measured: F faces.
+        way: along u (0) or v (1).
         owners: (p,) faces.
         parts: (p,) from 0 to 1.
     """
+    reach, lines = measured.reach[way], measured.lines[way]
     steps = reach.shape[1] - 1
     walked = parts * reach[owners, -1]
     before = np.clip((reach[owners] <= walked[:, None]).sum(axis=1) - 1, 0, steps - 1)
     start, stop = reach[owners, before], reach[owners, before + 1]
     within = np.divide(walked - start, stop - start, out=np.zeros_like(walked), where=stop > start)
     even = reach[owners, -1] <= 0.0
-    return np.where(even, parts, (before + within) / steps)
+    first, last = lines[owners, before], lines[owners, before + 1]
+    return np.where(even, parts, first + within * (last - first))
 
 
 def _inside(measured: _MeasuredFaces, face: int, parameters: Array) -> NDArray[np.bool_]:

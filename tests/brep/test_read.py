@@ -12,8 +12,10 @@ from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_Transform,
 )
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
-from OCP.Geom import Geom_CylindricalSurface
+from OCP.Geom import Geom_BSplineSurface, Geom_CylindricalSurface
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 
@@ -228,3 +230,43 @@ def test_equal_names_with_other_geometry_are_both_kept(folder, lips):
 def test_nothing_is_printed(capfd, strip_file):
     read_reference(strip_file)
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("grading", [1, 2, 3, 4])
+def test_samples_lie_evenly_however_unevenly_the_parameters_run(grading):
+    """A flat strip of 6 by 1 m whose knots crowd at one end."""
+    count, degree = 24, 3
+    poles = TColgp_Array2OfPnt(1, count, 1, 2)
+    for i in range(count):
+        for j in range(2):
+            poles.SetValue(i + 1, j + 1, gp_Pnt(6000.0 * i / (count - 1), 1000.0 * j, 0.0))
+    spans = count - degree
+    surface = Geom_BSplineSurface(
+        poles,
+        reals(((np.arange(spans + 1) / spans) ** grading).tolist()),
+        reals([0.0, 1.0]),
+        integers([degree + 1, *([1] * (spans - 1)), degree + 1]),
+        integers([2, 2]),
+        degree,
+        1,
+    )
+    (samples,) = sample_faces(BRepBuilderAPI_MakeFace(surface, 1e-6).Face())
+    assert samples.weights.sum() == pytest.approx(6e6, rel=1e-4)
+    assert samples.weights.max() < 3.0 * samples.weights.min()
+    places = np.unique(np.round(samples.points[:, 0]))
+    steps = np.diff([0.0, *places, 6000.0])
+    assert steps.max() < 2.5 * steps.mean()
+
+
+def reals(values):
+    array = TColStd_Array1OfReal(1, len(values))
+    for index, value in enumerate(values, start=1):
+        array.SetValue(index, value)
+    return array
+
+
+def integers(values):
+    array = TColStd_Array1OfInteger(1, len(values))
+    for index, value in enumerate(values, start=1):
+        array.SetValue(index, value)
+    return array

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 # How often panels may be given a closer feature because closing the seams took them too far.
 _PROMOTIONS = 3
+# How often they may be given another one because nothing could be built of them.
+_REPLACEMENTS = 8
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
 Progress = Callable[[str, int, float], None]
 
@@ -128,13 +130,21 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
     # that cannot be built any more another one.
     # The last result that can be built stands.
     buildable: FitResult | None = None
-    for attempt in range(_PROMOTIONS + 1):
+    promotions = replacements = 0
+    while True:
         lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
         if not len(lost):
             buildable = result
-        if attempt == _PROMOTIONS or (buildable is result and result.tolerance_met):
-            break
-        if not (choice.forbid(lost) if len(lost) else choice.promote(_offenders(result))):
+            if result.tolerance_met or promotions == _PROMOTIONS:
+                break
+            promotions += 1
+            changed = choice.promote(_offenders(result))
+        else:
+            if replacements == _REPLACEMENTS:
+                break
+            replacements += 1
+            changed = choice.forbid(lost)
+        if not changed:
             break
         result = _fit(reference, how, choice.features(), began, progress)
     return buildable or result

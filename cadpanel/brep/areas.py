@@ -153,7 +153,7 @@ def _across(face: TopoDS_Face) -> int:
     surface = BRepAdaptor_Surface(face)
     if surface.GetType() in EVEN:
         return 1
-    return min(FEWEST_ACROSS + ACROSS_A_SPAN * int(surface.NbUIntervals(GeomAbs_CN)), MOST_ACROSS)
+    return min(FEWEST_ACROSS + ACROSS_A_SPAN * spans_of(surface)[0], MOST_ACROSS)
 
 
 def _border(face: TopoDS_Face) -> tuple[Array, Array]:

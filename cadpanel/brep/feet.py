@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.GeomAbs import GeomAbs_CN
 from scipy.spatial import cKDTree
 
+from cadpanel.brep.areas import spans_of
 from cadpanel.brep.boundary import evaluate, unit_normals
 from cadpanel.brep.patch import Patch
 from cadpanel.brep.smooth import CLOSE
@@ -98,7 +98,7 @@ class _Grid:
 def _grid_over(patch: Patch) -> _Grid:
     """The closer the grid, the more spans the surface has: a wave or a fold takes a few of them."""
     surface = patch.surface
-    spans = np.array([surface.NbUIntervals(GeomAbs_CN), surface.NbVIntervals(GeomAbs_CN)])
+    spans = np.array(spans_of(surface))
     counts = np.clip(SPAN_NODES * spans, GRID, MOST_GRID)
     # Not on the border, where a surface may have a pole and no way to go on from there.
     along, across = ((np.arange(count) + 0.5) / count for count in counts.tolist())

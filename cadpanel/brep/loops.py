@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cadpanel.brep.lay import SAME, Stretch
 from cadpanel.brep.patch import Patch
-from cadpanel.reference.polyline import arc_length, norm
+from cadpanel.reference.polyline import arc_length, norm, side_of
 
 Array = NDArray[np.float64]
 
@@ -86,14 +86,8 @@ def _meet(line: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> NDA
     """Whether segments of a line meet, by the numbers of those (..., k) compared."""
     a, b, c, d = line[first], line[first + 1], line[second], line[second + 1]
     apart = (np.maximum(a, b) < np.minimum(c, d)) | (np.maximum(c, d) < np.minimum(a, b))
-    crossed = (_side(a, b, c) * _side(a, b, d) <= 0.0) & (_side(c, d, a) * _side(c, d, b) <= 0.0)
+    crossed = (side_of(a, b, c) * side_of(a, b, d) <= 0.0) & (side_of(c, d, a) * side_of(c, d, b) <= 0.0)
     return np.asarray(crossed & ~apart.any(axis=-1), dtype=np.bool_)
-
-
-def _side(starts: Array, stops: Array, points: Array) -> Array:
-    """Above 0 where points lie on the left of the way from starts to stops."""
-    ways, to = stops - starts, points - starts
-    return np.asarray(ways[..., 0] * to[..., 1] - ways[..., 1] * to[..., 0], dtype=np.float64)
 
 
 def _cuts(pairs: NDArray[np.intp]) -> list[int]:

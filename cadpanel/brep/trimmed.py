@@ -9,7 +9,7 @@ from OCP.TopAbs import TopAbs_OUT
 
 from cadpanel.brep import kernel
 from cadpanel.brep.patch import Patch
-from cadpanel.reference.polyline import distances_to_polylines, norm
+from cadpanel.reference.polyline import distances_to_polylines, norm, side_of
 
 Array = NDArray[np.float64]
 
@@ -50,8 +50,8 @@ class Trim:
         stops = np.concatenate([edge.parameters[1:] for edge in self._patch.edges])
         for first in range(0, len(line) - 1, AT_ONCE):
             ends = line[first : first + AT_ONCE + 1, None]
-            from_line = _side(ends[:-1], ends[1:], starts) * _side(ends[:-1], ends[1:], stops) < 0.0
-            from_border = _side(starts, stops, ends[:-1]) * _side(starts, stops, ends[1:]) < 0.0
+            from_line = side_of(ends[:-1], ends[1:], starts) * side_of(ends[:-1], ends[1:], stops) < 0.0
+            from_border = side_of(starts, stops, ends[:-1]) * side_of(starts, stops, ends[1:]) < 0.0
             if (from_line & from_border).any():
                 return True
         return False
@@ -63,9 +63,3 @@ def _height(polyline: Array) -> float:
     lengths = np.maximum(norm(ways), np.finfo(float).tiny)
     turns = norm(np.diff(ways / lengths[:, None], axis=0))
     return 0.25 * float((turns * np.maximum(lengths[1:], lengths[:-1])).max(initial=0.0))
-
-
-def _side(starts: Array, stops: Array, points: Array) -> Array:
-    """On which side of the way from starts to stops (..., 2) points lie: more than 0 on the left."""
-    ways, to = stops - starts, points - starts
-    return np.asarray(ways[..., 0] * to[..., 1] - ways[..., 1] * to[..., 0], dtype=np.float64)

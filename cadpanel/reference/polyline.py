@@ -89,6 +89,12 @@ def unit(vectors: Array) -> Array:
     return scaled
 
 
+def side_of(starts: Array, stops: Array, points: Array) -> Array:
+    """On which side of the way from starts to stops (..., 2) points lie: (...), above 0 on the left."""
+    ways, to = stops - starts, points - starts
+    return np.asarray(ways[..., 0] * to[..., 1] - ways[..., 1] * to[..., 0], dtype=np.float64)
+
+
 def end_tangents(starts: Array) -> Array:
     """Return the unit tangents (..., 3) at the first of (..., 3, 3) points, from the parabola through the three."""
     first, second = starts[..., 1, :] - starts[..., 0, :], starts[..., 2, :] - starts[..., 0, :]

@@ -34,11 +34,11 @@ def parted(corners: Array, faces: Faces) -> tuple[Faces, int]:
     """
     found = _hanging(corners, faces)
     while found:
-        uses = Counter(_sorted(*part) for face in _with(faces, found) for part in _round(face))
+        uses = uses_of(_with(faces, found))
         kept = {
             edge: between
             for edge, between in found.items()
-            if all(uses[_sorted(*part)] == 2 for part in pairwise((edge[0], *between, edge[1])))
+            if all(uses[unordered(*part)] == 2 for part in pairwise((edge[0], *between, edge[1])))
         }
         if len(kept) == len(found):
             break
@@ -48,8 +48,8 @@ def parted(corners: Array, faces: Faces) -> tuple[Faces, int]:
 
 def _hanging(corners: Array, faces: Faces) -> dict[Edge, tuple[int, ...]]:
     """For each edge of one face alone, as that face runs along it, the corners on it in their order; none left out."""
-    uses = Counter(_sorted(*edge) for face in faces for edge in _round(face))
-    single = [edge for face in faces for edge in _round(face) if uses[_sorted(*edge)] == 1]
+    uses = uses_of(faces)
+    single = [edge for face in faces for edge in round_of(face) if uses[unordered(*edge)] == 1]
     if not single:
         return {}
     on_border = np.unique(np.array(single))
@@ -73,13 +73,20 @@ def _with(faces: Faces, hanging: dict[Edge, tuple[int, ...]]) -> Faces:
     if not hanging:
         return faces
     return tuple(
-        tuple(corner for edge in _round(face) for corner in (edge[0], *hanging.get(edge, ()))) for face in faces
+        tuple(corner for edge in round_of(face) for corner in (edge[0], *hanging.get(edge, ()))) for face in faces
     )
 
 
-def _round(face: tuple[int, ...]) -> list[Edge]:
+def uses_of(faces: Faces) -> Counter[Edge]:
+    """How many times faces run along each edge."""
+    return Counter(unordered(*edge) for face in faces for edge in round_of(face))
+
+
+def round_of(face: tuple[int, ...]) -> list[Edge]:
+    """The edges of a face, as it runs along them."""
     return list(pairwise((*face, face[0])))
 
 
-def _sorted(first: int, last: int) -> Edge:
+def unordered(first: int, last: int) -> Edge:
+    """An edge, whichever way a face runs along it."""
     return (min(first, last), max(first, last))

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +19,10 @@ from cadpanel.brep.file_check import contents
 from cadpanel.brep.formats.units import no_unit
 from cadpanel.brep.nearness import far_off, sags
 from cadpanel.brep.smooth import Piece
-from cadpanel.brep.subdivide.hanging import parted
+from cadpanel.brep.subdivide.hanging import parted, uses_of
 from cadpanel.brep.subdivide.mesh_text import corners_and_faces
 from cadpanel.brep.subdivide.panel import CutPanel, middle_of
-from cadpanel.brep.subdivide.weld import welded
+from cadpanel.brep.subdivide.weld import Faces, welded
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
@@ -67,7 +65,7 @@ class Mesh:
 
     def curves(self) -> tuple[Curve, ...]:
         """The edges between two faces, in their order, as curves; none where no faces meet."""
-        uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
+        uses = uses_of(self.faces)
         on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
         found: list[Curve] = []
         for edge in sorted(edge for edge, count in uses.items() if count == 2):
@@ -93,7 +91,7 @@ class Mesh:
 
     def inner_corners(self) -> list[int]:
         """Those that faces surround."""
-        uses = Counter(_edge(*pair) for face in self.faces for pair in _round(face))
+        uses = uses_of(self.faces)
         on_border = {corner for edge, count in uses.items() if count == 1 for corner in edge}
         return sorted({corner for edge in uses for corner in edge} - on_border)
 
@@ -179,8 +177,8 @@ def _check_corners(name: str, faces: Sequence[tuple[int, ...]], count: int, faul
             raise ReferenceFileError(f"Face {place} of '{name}' {fault}: repair it, or {GIVE_UNIT}.")
 
 
-def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
-    uses = Counter(_edge(*pair) for face in faces for pair in _round(face))
+def _check_edges(name: str, faces: Faces) -> None:
+    uses = uses_of(faces)
     if max(uses.values()) > 2:
         (first, last), count = max(uses.items(), key=lambda item: item[1])
         raise ReferenceFileError(
@@ -191,11 +189,3 @@ def _check_edges(name: str, faces: Sequence[tuple[int, ...]]) -> None:
 def _along(start: Array, stop: Array, parts: Array) -> Array:
     """(m, 3) points at (m,) parts of the way."""
     return start + parts[:, None] * (stop - start)
-
-
-def _round(face: tuple[int, ...]) -> list[tuple[int, int]]:
-    return list(pairwise((*face, face[0])))
-
-
-def _edge(first: int, last: int) -> tuple[int, int]:
-    return (min(first, last), max(first, last))

@@ -27,8 +27,8 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
-    from cadpanel.brep.skin import build_skin
-    from cadpanel.brep.solid import build_solid
+    from cadpanel.brep.building.chain_skin import build_skin
+    from cadpanel.brep.building.sheet import build_solid
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.verify import Verification, verify
     from cadpanel.features.feature import Feature
@@ -94,8 +94,8 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
-        "brep.skin": ("build_skin",),
-        "brep.solid": ("build_solid",),
+        "brep.building.chain_skin": ("build_skin",),
+        "brep.building.sheet": ("build_solid",),
         "brep.survey": ("Survey",),
         "delivery.verify": ("Verification", "verify"),
         "features.feature": ("Feature",),

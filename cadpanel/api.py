@@ -228,7 +228,7 @@ def to_cadquery(
         PanelError: a panel cannot be built.
         SettingsError: the thickness or side is none.
     """
-    from cadpanel.brep.adapters import to_cadquery_shape, to_workplane
+    from cadpanel.brep.building.adapters import to_cadquery_shape, to_workplane
 
     solids = [panel.solid for panel in _build(panels, thickness, skin_side)]
     return to_workplane(solids[0]).newObject([to_cadquery_shape(solid) for solid in solids])
@@ -252,7 +252,7 @@ def to_build123d(
         PanelError: a panel cannot be built.
         SettingsError: the thickness or side is none.
     """
-    from cadpanel.brep.adapters import to_build123d_compound, to_build123d_part
+    from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
     built = _build(panels, thickness, skin_side)
     if isinstance(panels, PanelShape | PolygonShape):

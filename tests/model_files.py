@@ -21,8 +21,8 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
-from cadpanel.brep.model import Label
-from cadpanel.brep.silence import silence_kernel
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.kernel.messages import silence_kernel
 from tests.reference_shapes import Lip, kernel_face
 
 Labelled = tuple[Label, TopoDS_Shape, Sequence[tuple[Label, TopoDS_Shape]]]

@@ -25,7 +25,7 @@ from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep.silence import silence_kernel
+from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.reference.model import FaceSamples, RawPanel
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ import pytest
 
 import cadpanel as cp
 from cadpanel.api import FitKeywords
-from cadpanel.brep.step import read_step_shapes
+from cadpanel.brep.step.file import read_step_shapes
 from tests.delivered import fitted, strip
 from tests.instances import random_polygon
 

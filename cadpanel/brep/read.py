@@ -10,10 +10,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
-from cadpanel.brep.formats.catalogue import checked_format_of
-from cadpanel.brep.guard import Held, work_guarded
-from cadpanel.brep.panels import RawReference, has_products
-from cadpanel.brep.subdivide.cut import REMEDIES
+from cadpanel.brep.cutting.raw_panels import RawReference, has_products
+from cadpanel.brep.cutting.ways import REMEDIES
+from cadpanel.brep.files.catalogue import checked_format_of
+from cadpanel.brep.isolation.client import Held, work_guarded
 from cadpanel.errors import OutlineError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import Reference

@@ -20,18 +20,18 @@ from OCP.GeomAbs import (
     GeomAbs_Torus,
 )
 
-from cadpanel.brep.clean import SkinFace, skin_faces
-from cadpanel.brep.connect import Surface, surfaces_of
-from cadpanel.brep.curvature import Curvature, curvature_of
-from cadpanel.brep.curves import sampled
-from cadpanel.brep.formats.catalogue import checked_format_of
-from cadpanel.brep.guard import Held, work_guarded
-from cadpanel.brep.lips import SECTIONS, Lip, lips_of
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import Label, Model
-from cadpanel.brep.patch import Patch, lengths_along
-from cadpanel.brep.sections import sections_of
-from cadpanel.brep.select import select_faces
+from cadpanel.brep.curves.drawn_curve import sampled
+from cadpanel.brep.faces.face_patch import Patch, lengths_along
+from cadpanel.brep.files.catalogue import checked_format_of
+from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Label, Model
+from cadpanel.brep.isolation.client import Held, work_guarded
+from cadpanel.brep.skin.adjacency import Surface, surfaces_of
+from cadpanel.brep.skin.cross_sections import sections_of
+from cadpanel.brep.skin.curvature import Curvature, curvature_of
+from cadpanel.brep.skin.face_cleanup import SkinFace, skin_faces
+from cadpanel.brep.skin.lips import SECTIONS, Lip, lips_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.polyline import norm
 from cadpanel.reference.settings import ReferenceSettings, file_named

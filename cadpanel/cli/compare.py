@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cadpanel.brep.guard import start_reader
+from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.comparison import ComparisonModel, write_comparison

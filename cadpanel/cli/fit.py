@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from cadpanel.brep.guard import start_reader
+from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import delivery_folder

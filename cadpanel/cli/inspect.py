@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from cadpanel.brep.guard import start_reader
+from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.reference.settings import ReferenceSettings, choices_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from cadpanel.brep.occt import Shell, Solid
-from cadpanel.brep.solid import build_panel
+from cadpanel.brep.building.sheet import build_panel
+from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.delivery.sheet import SheetSettings
 from cadpanel.geometry.shape import AnyShape
 from cadpanel.geometry.volume import sheet_volume, skin_area

@@ -6,7 +6,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from cadpanel.brep.inspection_pool import Helper, second_interpreter
+from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.delivery.build import PanelSheet, Progress, build_panels, say_nothing
 from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.folder import delivery_folder

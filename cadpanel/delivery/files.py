@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cadpanel.brep.step import Color, write_step
+from cadpanel.brep.step.file import Color, write_step
 from cadpanel.delivery.build import PanelSheet
 from cadpanel.delivery.sheet import Schema
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
-from cadpanel.brep.inspection_pool import Helper
+from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
+from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.names import PANELS, SKINS
 from cadpanel.delivery.patch_records import PlanePatchModel
 from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel

@@ -28,11 +28,11 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
-from cadpanel.brep.guard import start_reader, stop_reader
-from cadpanel.brep.inspection_pool import Helper, second_interpreter
+from cadpanel.brep.isolation.client import start_reader, stop_reader
+from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
-from cadpanel.brep.silence import silence_kernel
 from cadpanel.delivery.build import PanelSheet, build_panels
 from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.names import PANELS, SKINS

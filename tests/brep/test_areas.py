@@ -8,9 +8,9 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere, BRepPrimAPI_MakeTorus
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.model import compound_of, shapes_of
-from cadpanel.brep.sampling import sample_faces
-from cadpanel.brep.split import area_of
+from cadpanel.brep.faces.sampling import sample_faces
+from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.splitting.splitter import area_of
 from tests.brep.test_drawn_curves import LENGTH, WAVE, WIDTH, cut_points, plate, raw, wave
 from tests.brep.test_network import curve
 from tests.model_files import STRIP, strip_faces

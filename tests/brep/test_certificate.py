@@ -15,11 +15,11 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep import inspection_pool
-from cadpanel.brep.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
-from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_solid
-from cadpanel.brep.step import write_step
+from cadpanel.brep.building.chain_skin import build_skin
+from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.proof import parallel
+from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.shape import ConePatch, PanelShape
 from cadpanel.geometry.straighten import straighten
@@ -206,7 +206,7 @@ def test_a_solid_where_a_skin_should_be_fails(delivery):
 
 def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
     alone = delivery.certify()
-    monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     assert delivery.certify() == alone
 
@@ -214,7 +214,7 @@ def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
 def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch):
     alone = delivery.certify()
     monkeypatch.setattr("os.cpu_count", lambda: 2)
-    with inspection_pool.second_interpreter(inspection_pool.WORTHWHILE_PANELS) as helper:
+    with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
         assert helper is not None
         helper.begin(delivery.skins_step)
         assert delivery.certify(helper=helper) == alone
@@ -223,7 +223,7 @@ def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch
 @pytest.mark.parametrize("dies", ["at once", "over the skins", "over the panels"])
 def test_a_second_interpreter_that_dies_costs_nothing_but_time(delivery, monkeypatch, dies):
     alone = delivery.certify()
-    monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     script = {
         "at once": "",
@@ -239,7 +239,7 @@ def test_a_second_interpreter_that_dies_costs_nothing_but_time(delivery, monkeyp
 
 @pytest.mark.parametrize("file", ["panels_step", "skins_step"])
 def test_a_file_cut_short_cannot_be_certified(delivery, file, monkeypatch):
-    monkeypatch.setattr(inspection_pool, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
     path = getattr(delivery, file)
     path.write_text(path.read_text()[:5000])
     with pytest.raises(DeliveryError, match="cannot be read"):

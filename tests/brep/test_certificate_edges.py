@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cadpanel.brep.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
-from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_solid
-from cadpanel.brep.step import write_step
+from cadpanel.brep.building.chain_skin import build_skin
+from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.step.file import write_step
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 from cadpanel.geometry.volume import sheet_volume
 from tests.instances import random_polygon

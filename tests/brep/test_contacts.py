@@ -8,9 +8,9 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolyg
 from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.clean import measure
-from cadpanel.brep.connect import contacts_of, surfaces_of
-from cadpanel.brep.model import Label, ModelFace
+from cadpanel.brep.files.model import Label, ModelFace
+from cadpanel.brep.skin.adjacency import contacts_of, surfaces_of
+from cadpanel.brep.skin.face_cleanup import measure
 
 # Plates in the plane z = 0, each a closed line and one that goes round a hole, if any; all have an edge along x, from
 # 1000 to 3000 at y = 1000, on whose far side (y > 1000) there is nothing of the plate near the edge.

@@ -16,8 +16,8 @@ from OCP.BRepPrimAPI import (
 from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.model import compound_of, shapes_of
-from cadpanel.brep.split import area_of
+from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError, SettingsError
 from tests.brep.test_subdivide import reference_of
 from tests.model_files import strip_faces, write_shape

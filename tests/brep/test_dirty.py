@@ -10,11 +10,11 @@ from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.clean import find_doubles
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import Label, compound_of, shapes_of
+from cadpanel.brep.faces.sampling import sample_faces
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Label, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.sampling import sample_faces
+from cadpanel.brep.skin.face_cleanup import find_doubles
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_network import across, quads, write_mesh

@@ -10,19 +10,19 @@ from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep import lay
-from cadpanel.brep.areas import enclosed
-from cadpanel.brep.clean import skin_faces
-from cadpanel.brep.connect import surfaces_of
-from cadpanel.brep.curves import sampled
-from cadpanel.brep.model import Label, Model, ModelCurve, Part, compound_of, shapes_of
-from cadpanel.brep.panels import raw_panels
-from cadpanel.brep.project import land_curves
+from cadpanel.brep.curves import pcurve_fit
+from cadpanel.brep.curves.drawn_curve import sampled
+from cadpanel.brep.curves.pieces import CLOSE
+from cadpanel.brep.curves.projection import land_curves
+from cadpanel.brep.cutting.by_network import cut_network
+from cadpanel.brep.cutting.raw_panels import raw_panels
+from cadpanel.brep.faces.area import enclosed
+from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.model import Label, Model, ModelCurve, Part, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.select import select_faces
-from cadpanel.brep.smooth import CLOSE
-from cadpanel.brep.split import area_of
-from cadpanel.brep.subdivide.network import cut_network
+from cadpanel.brep.skin.adjacency import surfaces_of
+from cadpanel.brep.skin.face_cleanup import skin_faces
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.reference.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
@@ -234,7 +234,7 @@ def test_curve_that_leaves_a_sliver_is_named(tmp_path):
 
 
 def test_curve_that_cannot_be_followed_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(lay, "ROUNDS", 0)
+    monkeypatch.setattr(pcurve_fit, "ROUNDS", 0)
     skin = write_shape(tmp_path / "skin.brep", plate())
     lines = write_shape(tmp_path / "lines.brep", wave(1))
     with pytest.raises(ReferenceFileError, match=r"Curve 1 of 'lines.brep' cannot be followed .* on face 1: draw it"):

@@ -10,10 +10,10 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.inspection import inspect
-from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_panel, volume_of
-from cadpanel.brep.step import read_step_shapes, write_step
+from cadpanel.brep.building.chain_skin import build_skin
+from cadpanel.brep.building.sheet import build_panel, volume_of
+from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.shape import ConePatch, PolygonShape
 from cadpanel.geometry.tangency import edge_angles, surface_normals

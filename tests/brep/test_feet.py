@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cadpanel.brep.feet import Search
-from cadpanel.brep.patch import patch_of
+from cadpanel.brep.faces.closest_points import Search
+from cadpanel.brep.faces.face_patch import patch_of
 from tests.brep.test_drawn_curves import cut, polyline
 from tests.reference_shapes import kernel_face
 

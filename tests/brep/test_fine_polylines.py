@@ -9,11 +9,11 @@ from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.curves import sampled
-from cadpanel.brep.model import Label, ModelCurve, compound_of, shapes_of
-from cadpanel.brep.polylines import polyline_edge
+from cadpanel.brep.curves.drawn_curve import sampled
+from cadpanel.brep.curves.pieces import CLOSE
+from cadpanel.brep.curves.polyline_joining import polyline_edge
+from cadpanel.brep.files.model import Label, ModelCurve, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.smooth import CLOSE
 from cadpanel.reference.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_drawn_curves import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw

@@ -5,9 +5,9 @@ import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.gp import gp_Pln, gp_Pnt
 
-from cadpanel.brep.model import compound_of
+from cadpanel.brep.files.model import compound_of
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.split import area_of
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_drawn_curves import LENGTH, WIDTH, circle, cut, line, plate, polyline, raw

@@ -10,10 +10,10 @@ from OCP.GeomAPI import GeomAPI_PointsToBSpline
 from OCP.gp import gp_Pln, gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt
 
-from cadpanel.brep.model import compound_of
+from cadpanel.brep.cutting.panel_names import Link, place_names
+from cadpanel.brep.files.model import compound_of
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.split import area_of
-from cadpanel.brep.subdivide.places import Link, place_names
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import STRIP, strip_faces, write_shape

@@ -11,11 +11,11 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep.formats.xcaf import new_document
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import Label
+from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.files.xcaf import new_document
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.select import select_faces
 from cadpanel.brep.survey import survey
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings

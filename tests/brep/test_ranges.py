@@ -10,8 +10,8 @@ from OCP.Geom2d import Geom2d_Ellipse
 from OCP.Geom2dConvert import Geom2dConvert
 from OCP.gp import gp_Ax2d, gp_Dir2d, gp_Pnt2d
 
-from cadpanel.brep.patch import patch_of
-from cadpanel.brep.ranges import parameter_range
+from cadpanel.brep.faces.face_patch import patch_of
+from cadpanel.brep.faces.parameter_range import parameter_range
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_split import RADIUS, spline_plane

@@ -19,9 +19,9 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 
-from cadpanel.brep.names import unique_names
+from cadpanel.brep.faces.sampling import sample_faces
+from cadpanel.brep.files.names import unique_names
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.sampling import sample_faces
 from tests.reference_shapes import (
     Lip,
     compound,

@@ -12,15 +12,15 @@ from OCP.gp import gp_Ax2d, gp_Dir2d, gp_Pnt, gp_Pnt2d
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.formats import opennurbs
-from cadpanel.brep.formats.units import scaled
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import shapes_of
-from cadpanel.brep.patch import patch_of
+from cadpanel.brep.faces.face_patch import patch_of
+from cadpanel.brep.faces.pcurve_repair import sharpen_trims
+from cadpanel.brep.files import opennurbs
+from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.files.units import scaled
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.select import select_faces
-from cadpanel.brep.split import area_of
-from cadpanel.brep.trims import sharpen_trims
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 

@@ -8,11 +8,11 @@ from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import shapes_of
-from cadpanel.brep.patch import patch_of
+from cadpanel.brep.faces.face_patch import patch_of
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import shapes_of
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.split import area_of
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_rhino import bent_surface, file_in, off_border, written
 

@@ -10,9 +10,9 @@ from OCP.TopAbs import TopAbs_SHELL
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.inspection import inspect
-from cadpanel.brep.skin import build_skin
-from cadpanel.brep.solid import build_panel, build_solid, volume_of
+from cadpanel.brep.building.chain_skin import build_skin
+from cadpanel.brep.building.sheet import build_panel, build_solid, volume_of
+from cadpanel.brep.proof.shape_facts import inspect
 from cadpanel.errors import PanelError
 from cadpanel.geometry.buildable import SkinSide
 from cadpanel.geometry.shape import ConePatch

@@ -11,11 +11,11 @@ from OCP.ShapeFix import ShapeFix_Face
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.patch import geometry, patch_of
+from cadpanel.brep.cutting.by_grid import line_edge
+from cadpanel.brep.faces.face_patch import geometry, patch_of
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.split import FUZZY, area_of, require_whole, split_faces
-from cadpanel.brep.split_edges import split_along
-from cadpanel.brep.subdivide.grid import line_edge
+from cadpanel.brep.splitting.split_along_edges import split_along
+from cadpanel.brep.splitting.splitter import FUZZY, area_of, require_whole, split_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import write_shape

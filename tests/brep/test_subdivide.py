@@ -21,14 +21,14 @@ from OCP.gp import gp_Ax3, gp_Dir, gp_Pln, gp_Pnt, gp_Pnt2d
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.clean import skin_faces
-from cadpanel.brep.connect import surfaces_of
-from cadpanel.brep.model import Label, Model, Part, compound_of, shapes_of
+from cadpanel.brep.cutting.ways import cut_surfaces
+from cadpanel.brep.faces.sampling import sample_faces
+from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.model import Label, Model, Part, compound_of, shapes_of
 from cadpanel.brep.read import read_reference
-from cadpanel.brep.sampling import sample_faces
-from cadpanel.brep.select import select_faces
-from cadpanel.brep.split import area_of
-from cadpanel.brep.subdivide.cut import cut_surfaces
+from cadpanel.brep.skin.adjacency import surfaces_of
+from cadpanel.brep.skin.face_cleanup import skin_faces
+from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings, choice_named, choices_of
 from tests.model_files import STRIP, strip_faces, write_shape

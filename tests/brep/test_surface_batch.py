@@ -22,7 +22,7 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_A
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.surface_batch import SurfaceBatch
+from cadpanel.brep.faces.surface_batch import SurfaceBatch
 
 SIZE = 1000.0  # mm, of the random surfaces
 ROUNDING = 1e-11  # of values and of derivatives, relative to their size

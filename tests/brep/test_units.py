@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from cadpanel.brep.formats.iges import UNITS
-from cadpanel.brep.loading import load_model
-from cadpanel.brep.model import Label
+from cadpanel.brep.faces.sampling import sample_faces
+from cadpanel.brep.files.iges import UNITS
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Label
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.brep.sampling import sample_faces
 from cadpanel.brep.survey import survey
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings

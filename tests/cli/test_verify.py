@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from cadpanel.brep.step import read_step_shapes
+from cadpanel.brep.step.file import read_step_shapes
 from tests.cli.conftest import Run
 
 

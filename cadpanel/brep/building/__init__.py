@@ -1,0 +1,1 @@
+"""From a fitted panel to exact kernel shapes: edges, surfaces, skins and sheets."""

@@ -1,0 +1,126 @@
+"""A panel's skin as an open shell of exact planes, cones and cylinders that share their straight generatrices."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import cast
+
+from OCP.BRep import BRep_Builder
+from OCP.GeomAbs import GeomAbs_G1
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Vertex
+
+from cadpanel.brep.building import edges, surfaces
+from cadpanel.brep.building.edges import shell_of
+from cadpanel.brep.building.polygon_sheet import polygon_skin
+from cadpanel.geometry.buildable import check_skin
+from cadpanel.geometry.sections import EllipticSection, axis_frame, cut_cone, elliptic_section
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.straighten import straighten
+
+_BUILDER = BRep_Builder()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SkinTopology:
+    """The pieces of a skin with k patches, so that walls can share them.
+
+    Attributes:
+        corners: (2, k + 1, 3) mm.
+        vertices: [end][ruling].
+        rulings: k + 1 straight edges from end 0 to end 1.
+        ends: [end][patch] edges from ruling i to ruling i + 1.
+        faces: k faces with their normals along n.
+    """
+
+    corners: Array
+    vertices: tuple[tuple[TopoDS_Vertex, ...], tuple[TopoDS_Vertex, ...]]
+    rulings: tuple[TopoDS_Edge, ...]
+    ends: tuple[tuple[TopoDS_Edge, ...], tuple[TopoDS_Edge, ...]]
+    faces: tuple[TopoDS_Face, ...]
+
+
+def build_skin(shape: AnyShape) -> TopoDS_Shell:
+    """The panel's skin as an open shell, its faces' normals along n (outward).
+
+    A cone of half angle 5e-6 rad or less is built as a cylinder; `straighten` says which and what it moves.
+
+    Raises:
+        PanelError: if the skin cannot be built (see `check_skin`).
+    """
+    check_skin(shape)
+    if isinstance(shape, PolygonShape):
+        return polygon_skin(shape)
+    return shell_of(skin_topology(straighten(shape).shape).faces)
+
+
+def skin_topology(shape: PanelShape) -> SkinTopology:
+    """Vertices, edges and faces of a skin that has passed its checks."""
+    corners = shape.corners()
+    rulings_count = len(shape.points)
+    vertices = [[edges.vertex_at(corners[end, ruling]) for ruling in range(rulings_count)] for end in range(2)]
+    rulings = [
+        edges.line_edge(vertices[0][ruling], vertices[1][ruling], corners[0, ruling], corners[1, ruling])
+        for ruling in range(rulings_count)
+    ]
+    ends: list[list[TopoDS_Edge]] = [[], []]
+    faces: list[TopoDS_Face] = []
+    for index, patch in enumerate(shape.patches):
+        sections = _sections(shape, index, patch) if isinstance(patch, ConePatch) else (None, None)
+        for end, section in enumerate(sections):
+            first, last = vertices[end][index : index + 2]
+            edge = (
+                edges.line_edge(first, last, corners[end, index], corners[end, index + 1])
+                if section is None
+                else edges.arc_edge(first, last, section)
+            )
+            ends[end].append(edge)
+        border = (ends[0][index], rulings[index + 1], ends[1][index], rulings[index])
+        faces.append(_patch_face(shape, index, corners, sections, border))
+    for index in range(1, rulings_count - 1):
+        _BUILDER.Continuity(rulings[index], faces[index - 1], faces[index], GeomAbs_G1)
+    return SkinTopology(
+        corners=corners,
+        vertices=(tuple(vertices[0]), tuple(vertices[1])),
+        rulings=tuple(rulings),
+        ends=(tuple(ends[0]), tuple(ends[1])),
+        faces=tuple(faces),
+    )
+
+
+def _sections(shape: PanelShape, index: int, patch: ConePatch) -> tuple[EllipticSection, EllipticSection]:
+    frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    low, high = (
+        elliptic_section(frame, cut_cone(frame, point, normal))
+        for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
+    )
+    return low, high
+
+
+def _patch_face(
+    shape: PanelShape,
+    index: int,
+    corners: Array,
+    sections: tuple[EllipticSection | None, EllipticSection | None],
+    border: tuple[TopoDS_Edge, TopoDS_Edge, TopoDS_Edge, TopoDS_Edge],
+) -> TopoDS_Face:
+    """The face of one patch; `border` runs end 0, ruling i + 1, end 1, ruling i, all edges in their own direction."""
+    patch = shape.patches[index]
+    point, direction, normal = shape.points[index], shape.directions[index], shape.normals[index]
+    if isinstance(patch, ConePatch):
+        frame = axis_frame(point, direction, normal, patch)
+        # Along the axis, not along the rulings: their points need not lie on the same level.
+        heights = (corners[:, index : index + 2] - frame.center) @ frame.axis / math.cos(patch.half_angle)
+        surface = surfaces.round_surface(frame, float(heights.mean()))
+        for edge, section in zip((border[0], border[2]), sections, strict=True):
+            edges.lay_on_surface(edge, surfaces.arc_on_round(surface, cast(EllipticSection, section)), surface.surface)
+        for edge, angle, start in zip((border[3], border[1]), (0.0, patch.sweep), heights[0].tolist(), strict=True):
+            edges.lay_on_surface(edge, surfaces.generatrix_on_round(surface, angle, start), surface.surface)
+        return edges.face_on(surface.surface, surface.agrees, _loop(border))
+    plane = surfaces.plane_surface(corners[0, index], normal, direction)
+    return edges.face_on(plane.surface, plane.agrees, _loop(border))
+
+
+def _loop(border: tuple[TopoDS_Edge, TopoDS_Edge, TopoDS_Edge, TopoDS_Edge]) -> tuple[TopoDS_Edge, ...]:
+    """Counterclockwise about n, since b x t = n."""
+    return border[0], border[1], cast(TopoDS_Edge, border[2].Reversed()), cast(TopoDS_Edge, border[3].Reversed())

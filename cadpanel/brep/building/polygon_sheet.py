@@ -1,0 +1,59 @@
+"""A planar polygon as an exact face, and its sheet as a prism whose walls stand square on it."""
+
+from __future__ import annotations
+
+import numpy as np
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex
+
+from cadpanel.brep.building import edges, surfaces
+from cadpanel.geometry.shape import Array, PolygonShape
+
+
+class _Level:
+    """One of the two faces of the sheet: corners, vertices and edges, each from its corner to the next."""
+
+    def __init__(self, shape: PolygonShape) -> None:
+        self.corners: Array = shape.outline
+        self.vertices: list[TopoDS_Vertex] = [edges.vertex_at(corner) for corner in self.corners]
+        count = len(self.corners)
+        self.edges: list[TopoDS_Edge] = [
+            edges.line_edge(
+                self.vertices[i], self.vertices[(i + 1) % count], self.corners[i], self.corners[(i + 1) % count]
+            )
+            for i in range(count)
+        ]
+        plane = surfaces.plane_surface(self.corners[0], shape.normal, self.corners[1] - self.corners[0])
+        self.face: TopoDS_Face = edges.face_on(plane.surface, plane.agrees, self.edges)
+
+
+def polygon_faces(near: PolygonShape, far: PolygonShape) -> tuple[TopoDS_Face, list[TopoDS_Face]]:
+    """The face of the skin, and all faces of the sheet between two parallel polygons with their normals outwards.
+
+    The skin's own face is among those of the sheet; `near` is the skin.
+    """
+    skin, other = _Level(near), _Level(far)
+    skin_is_top = float((near.outline[0] - far.outline[0]) @ near.normal) > 0.0
+    top, bottom = (skin, other) if skin_is_top else (other, skin)
+    faces = [top.face, TopoDS.Face_s(bottom.face.Reversed()), *_walls(near.normal, top, bottom)]
+    return skin.face, faces
+
+
+def polygon_skin(shape: PolygonShape) -> TopoDS_Shell:
+    """The polygon as an open shell of one face, its normal outwards."""
+    return edges.shell_of([_Level(shape).face])
+
+
+def _walls(normal: Array, top: _Level, bottom: _Level) -> list[TopoDS_Face]:
+    count = len(top.corners)
+    posts = [
+        edges.line_edge(bottom.vertices[i], top.vertices[i], bottom.corners[i], top.corners[i]) for i in range(count)
+    ]
+    walls = []
+    for i in range(count):
+        after = (i + 1) % count
+        # Counterclockwise about the way out: along the bottom edge, up, back along the top, down.
+        loop: list[TopoDS_Shape] = [bottom.edges[i], posts[after], top.edges[i].Reversed(), posts[i].Reversed()]
+        along = bottom.corners[after] - bottom.corners[i]
+        wall = surfaces.plane_surface(bottom.corners[i], np.cross(along, normal), along)
+        walls.append(edges.face_on(wall.surface, wall.agrees, loop))
+    return walls

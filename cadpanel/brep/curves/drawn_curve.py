@@ -1,0 +1,151 @@
+"""Loose curves of a file: those that cut a surface, or the spine along which stations are measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.Standard import Standard_Failure
+from OCP.TopoDS import TopoDS, TopoDS_Edge
+
+from cadpanel.brep.curves.pieces import Piece, piece_through, smooth_pieces
+from cadpanel.brep.curves.polyline_joining import joined
+from cadpanel.brep.curves.polyline_smoothing import FACET
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Model, ModelCurve
+from cadpanel.brep.files.units import shifted
+from cadpanel.errors import ReferenceFileError
+
+Array = NDArray[np.float64]
+
+# How closely one curve must begin where another one ends to follow it, as a part of the whole length.
+FOLLOWS = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curve:
+    """A curve of a file.
+
+    Attributes:
+        number: its place there, from 1.
+        name: as the file has it.
+        edge: the kernel's edge.
+        points: (q, 3) along it, mm.
+        parts: its smooth pieces; none where it is the smooth curve through its points.
+    """
+
+    number: int
+    name: str
+    edge: TopoDS_Edge
+    points: Array
+    parts: tuple[Piece, ...] = ()
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Its smooth pieces, each of which begins where the one before it ends."""
+        return self.parts or (piece_through(self.points),)
+
+    @property
+    def beside(self) -> float:
+        """How far its pieces run beside a polyline that stands for them, at most, mm."""
+        return max((piece.beside for piece in self.parts), default=0.0)
+
+    @property
+    def called(self) -> str:
+        """How a message speaks of it."""
+        return f"curve {self.number}" + (f" ('{self.name}')" if self.name else "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveFile:
+    """The loose curves of a file beside a reference, its name, and what should be known of how it was read."""
+
+    source: str
+    curves: tuple[Curve, ...]
+    notes: tuple[str, ...]
+
+
+def load_curves(path: Path, reference: Model, millimetres: float | None) -> CurveFile:
+    """The loose curves of a file, in the coordinates of a reference.
+
+    Args:
+        path: a file of any format.
+        reference: beside which they lie.
+        millimetres: how many the unit has that the user gives, for files without one of their own.
+
+    Raises:
+        ReferenceFileError: the file cannot be read, or holds no loose curves.
+    """
+    model = load_model(path, millimetres, near_origin=False, beside_unitless=not reference.own_unit)
+    loose = model.curves()
+    if not loose:
+        raise ReferenceFileError(
+            f"'{path.name}' holds no loose curves, only faces: export the lines between the panels as curves."
+        )
+    curves = sampled(loose, path.name, -np.array(reference.origin))
+    if not curves:
+        raise ReferenceFileError(f"'{path.name}' holds only curves without length: draw them again.")
+    return CurveFile(source=model.source, curves=curves, notes=model.notes)
+
+
+def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:
+    """Curves with points along them, moved by (3,) `shift`; those without length are left out.
+
+    Straight edges that go on from each other with facets only are one curve, called by the first of them.
+
+    Raises:
+        ReferenceFileError: the kernel cannot evaluate one of them.
+    """
+    curves = []
+    for number, curve in joined(loose, FACET):
+        if BRep_Tool.Degenerated_s(curve.edge):
+            continue
+        edge = TopoDS.Edge_s(shifted(curve.edge, tuple(shift.tolist()))) if shift.any() else curve.edge
+        try:
+            pieces = smooth_pieces(edge)
+        except Standard_Failure as error:
+            raise ReferenceFileError(
+                f"Curve {number} of '{source}' cannot be evaluated by the CAD kernel ({error}): redraw it."
+            ) from error
+        points = np.concatenate([pieces[0].points, *(piece.points[1:] for piece in pieces[1:])])
+        if not np.isfinite(points).all():
+            raise ReferenceFileError(f"Curve {number} of '{source}' has points that are not numbers: redraw it.")
+        if np.ptp(points, axis=0).max() > 0.0:
+            curves.append(Curve(number=number, name=curve.label.name, edge=edge, points=points, parts=pieces))
+    return tuple(curves)
+
+
+def chain(polylines: Sequence[Array]) -> Array | None:
+    """Join polylines that follow each other to one, begun at the end that comes first along its main axis.
+
+    Returns:
+        (q, 3) points, or None where they do not follow each other.
+    """
+    left = list(polylines)
+    if not left:
+        return None
+    near = FOLLOWS * sum(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in left)
+    line = left.pop(0)
+    while left:
+        for index, other in enumerate(left):
+            joined = _joined(line, other, near)
+            if joined is not None:
+                line = joined
+                left.pop(index)
+                break
+        else:
+            return None
+    way = line[-1] - line[0]
+    return line[::-1] if way[np.abs(way).argmax()] < 0.0 else line
+
+
+def _joined(line: Array, other: Array, near: float) -> Array | None:
+    for first in (line, line[::-1]):
+        for second in (other, other[::-1]):
+            if np.linalg.norm(first[-1] - second[0]) <= near:
+                return np.concatenate([first, second[1:]])
+    return None

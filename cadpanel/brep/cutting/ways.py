@@ -1,0 +1,165 @@
+"""From the skin's surfaces to panels, whichever way is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cadpanel.brep.curves.drawn_curve import Curve, load_curves, sampled
+from cadpanel.brep.curves.projection import land_curves
+from cadpanel.brep.cutting.by_grid import cut_grid
+from cadpanel.brep.cutting.by_length import cut_lengths, cut_lip
+from cadpanel.brep.cutting.by_mesh import LAY_OVER, load_mesh, require_all_panels, require_near
+from cadpanel.brep.cutting.by_network import WORTH_A_NOTE, cut_network
+from cadpanel.brep.cutting.by_stations import cut_stations, spine_of
+from cadpanel.brep.cutting.cut_panel import CutPanel
+from cadpanel.brep.cutting.open_closed_faces import opened
+from cadpanel.brep.files.model import Model
+from cadpanel.brep.skin.adjacency import Surface
+from cadpanel.brep.skin.strip import CUT_OTHERWISE
+from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.reference.settings import ReferenceSettings
+
+DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
+"""What to do about a curve that does not cut."""
+
+
+REMEDIES = {
+    "divide": f"{CUT_OTHERWISE}, or divide it into another number of panels",
+    "grid": "give a grid of other numbers, 2 or more each way, 3 or more round a point, its lines through every hole",
+    "stations": f"{CUT_OTHERWISE}, or give other stations",
+}
+"""What to do about a panel without an outline, by the way in which it was cut, where that is at fault."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cut:
+    """The panels of a reference, and what should be known of how they were cut."""
+
+    panels: tuple[CutPanel, ...]
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Skin:
+    """What is cut: surfaces of a model, the file that it came from, and how to cut."""
+
+    model: Model
+    surfaces: Sequence[Surface]
+    settings: ReferenceSettings
+    file: Path
+
+
+def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, file: Path) -> Cut:
+    """Cut every surface the way that the settings ask for.
+
+    Args:
+        model: the file's content.
+        surfaces: the skin, in faces that hang together.
+        settings: with one way to cut.
+        file: where the model came from.
+
+    Raises:
+        ReferenceFileError: a surface cannot be cut that way.
+        SettingsError: no way is asked for, or a setting does not fit the surface.
+    """
+    if settings.way is None:
+        raise SettingsError(f"no way to cut '{model.source}' was asked for")
+    return WAYS[settings.way](_Skin(model=model, surfaces=surfaces, settings=settings, file=file))
+
+
+def _lengths(skin: _Skin) -> Cut:
+    count, lip = skin.settings.divide or 1, skin.settings.lip
+    source, tolerance = skin.model.source, skin.settings.seam_tolerance
+    panels: list[CutPanel] = []
+    notes: list[str] = []
+    for surface in skin.surfaces:
+        if lip is None:
+            panels += cut_lengths(surface, count, source, tolerance)
+        else:
+            of_band, found = cut_lip(surface, count, lip, source, tolerance)
+            panels += of_band
+            notes += found
+    return Cut(panels=tuple(panels), notes=tuple(notes))
+
+
+def _grid(skin: _Skin) -> Cut:
+    counts, by = skin.settings.grid or (1, 1), skin.settings.by or "length"
+    source, tolerance = skin.model.source, skin.settings.seam_tolerance
+    cut = [cut_grid(surface, counts, by, source, tolerance) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+
+
+def _stations(skin: _Skin) -> Cut:
+    how = skin.settings
+    found = None if how.spine is None else load_curves(how.spine, skin.model, how.millimetres)
+    spine = None if found is None else spine_of(found)
+    stations, tolerance = how.stations or (), how.seam_tolerance
+    cut = [cut_stations(surface, stations, spine, skin.model.source, tolerance) for surface in skin.surfaces]
+    return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=found.notes if found else ())
+
+
+def _network(skin: _Skin) -> Cut:
+    file = skin.settings.network or skin.file
+    if skin.settings.beside(skin.file) is None:
+        curves = sampled(skin.model.curves(), file.name, np.zeros(3))
+        if not curves:
+            raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
+        return _cut_by_curves(skin, curves, file.name, DRAW_ON)
+    found = load_curves(file, skin.model, skin.settings.millimetres)
+    return _cut_by_curves(skin, found.curves, file.name, DRAW_ON, found.notes)
+
+
+def _mesh(skin: _Skin) -> Cut:
+    file = skin.settings.mesh or skin.file
+    origin = np.array(skin.model.origin)
+    mesh = load_mesh(file, origin, skin.settings.millimetres, skin.settings.seam_tolerance)
+    require_near(mesh, skin.surfaces, file.name, skin.model.source)
+    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER, mesh.notes)
+    require_all_panels(mesh, cut.panels, file.name, skin.model.source)
+    return cut
+
+
+def _cut_by_curves(
+    skin: _Skin, curves: Sequence[Curve], curve_source: str, remedy: str, notes: tuple[str, ...] = ()
+) -> Cut:
+    """Cut every surface by the curves that lie over it, and refuse one that lies over none with the remedy given."""
+    tolerance = skin.settings.seam_tolerance
+    source = skin.model.source
+    surfaces = [opened(surface, source) for surface in skin.surfaces]
+    landings = land_curves(surfaces, curves, tolerance, curve_source)
+    stray = [curve for index, curve in enumerate(curves) if not any(landing.edges[index] for landing in landings)]
+    if stray:
+        called = stray[0].called
+        raise ReferenceFileError(
+            f"{called[:1].upper()}{called[1:]} of '{curve_source}' lies over no surface of '{source}': {remedy}."
+        )
+    panels: list[CutPanel] = []
+    for whole, surface, landing in zip(skin.surfaces, surfaces, landings, strict=True):
+        what = f"the surface of {whole.numbers} of '{source}'"
+        panels += cut_network(surface, curves, landing, what, curve_source, remedy, tolerance)
+    farthest, offset = max(enumerate(landing.offset for landing in landings), key=lambda landed: landed[1])
+    fine = [curve for curve in curves if curve.beside > WORTH_A_NOTE]
+    if fine:
+        which = f"{fine[0].called} of '{curve_source}'" if len(fine) == 1 else f"{len(fine)} curves of '{curve_source}'"
+        beside = max(curve.beside for curve in fine)
+        found = f"The segments of {which} stand for a smooth curve, which passes up to {beside:.2g} mm beside them."
+        notes = (*notes, found)
+    if offset > WORTH_A_NOTE:
+        off = "the surface" if len(landings) == 1 else f"the surface of {skin.surfaces[farthest].numbers}"
+        found = f"The curves of '{curve_source}' lie up to {offset:.3g} mm off {off} and were projected onto it."
+        notes = (*notes, found)
+    return Cut(panels=tuple(panels), notes=notes)
+
+
+WAYS: dict[str, Callable[[_Skin], Cut]] = {
+    "divide": _lengths,
+    "grid": _grid,
+    "stations": _stations,
+    "network": _network,
+    "mesh": _mesh,
+}
+"""The ways to cut, by the settings that ask for them."""

@@ -1,0 +1,1 @@
+"""Faces as arrays: their patches, borders, areas, samples and closest points."""

@@ -1,0 +1,65 @@
+"""Which points of a surface lie on its face, and not beyond the face's border, in a notch or a hole of it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.TopAbs import TopAbs_OUT
+
+from cadpanel.brep.faces.face_patch import Patch
+from cadpanel.brep.kernel import points as kernel
+from cadpanel.reference.polyline import distances_to_polylines, norm, side_of
+
+Array = NDArray[np.float64]
+
+# Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
+INSIDE = 1e-9
+# Segments whose crossings with a border are looked for at once: few enough to take little memory.
+AT_ONCE = 64
+
+
+class Trim:
+    """The border of a face that does not fill its parameter range."""
+
+    def __init__(self, patch: Patch) -> None:
+        """Set up the kernel's test, which is used again and again."""
+        self._patch = patch
+        self._test = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds, axis=1).min()))
+
+    def encloses(self, parameters: Array) -> NDArray[np.bool_]:
+        """Which of (m, 2) parameters lie on the face or on its border."""
+        tested = [self._test.Perform(kernel.point_2d(*place)) != TopAbs_OUT for place in parameters.tolist()]
+        return np.array(tested, dtype=np.bool_)
+
+    def leaves_out(self, parameters: Array, clearance: float) -> bool:
+        """Whether a line of (m, 2) parameters outside the face goes farther than a clearance away, and never inside.
+
+        Args:
+            parameters: each outside.
+            clearance: from the border, mm. What stays closer may have been meant to run along it.
+        """
+        points = self._patch.points(parameters)[None]
+        edges = [edge.points for edge in self._patch.edges]
+        away = np.min([distances_to_polylines(points, edge[None])[0] - _height(edge) for edge in edges], axis=0)
+        return bool(away.max() > clearance) and not self._crossed(parameters)
+
+    def _crossed(self, line: Array) -> bool:
+        """Whether a line in the parameter plane crosses the border."""
+        starts = np.concatenate([edge.parameters[:-1] for edge in self._patch.edges])
+        stops = np.concatenate([edge.parameters[1:] for edge in self._patch.edges])
+        for first in range(0, len(line) - 1, AT_ONCE):
+            ends = line[first : first + AT_ONCE + 1, None]
+            from_line = side_of(ends[:-1], ends[1:], starts) * side_of(ends[:-1], ends[1:], stops) < 0.0
+            from_border = side_of(starts, stops, ends[:-1]) * side_of(starts, stops, ends[1:]) < 0.0
+            if (from_line & from_border).any():
+                return True
+        return False
+
+
+def _height(polyline: Array) -> float:
+    """How far the curve through a polyline's points may rise above its segments, mm; twice that of an arc."""
+    ways = np.diff(polyline, axis=0)
+    lengths = np.maximum(norm(ways), np.finfo(float).tiny)
+    turns = norm(np.diff(ways / lengths[:, None], axis=0))
+    return 0.25 * float((turns * np.maximum(lengths[1:], lengths[:-1])).max(initial=0.0))

@@ -1,0 +1,98 @@
+"""From a file in any format to a model: recognised, read in the guarded interpreter, moved near the origin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRepBndLib import BRepBndLib
+from OCP.Standard import Standard_Failure
+
+from cadpanel.brep.files.catalogue import checked_format_of
+from cadpanel.brep.files.model import Model, compound_of
+from cadpanel.brep.files.units import refuse_given, shifted
+from cadpanel.brep.isolation.client import read_guarded
+from cadpanel.brep.server import PackedModel
+from cadpanel.errors import ReferenceFileError
+
+FAR = 1e7
+"""Distance from the origin, mm, from which a model is moved: the kernel's checks fail at map-grid coordinates."""
+WHOLE_METRE = 1000.0
+LARGEST_COORDINATE = 1e12
+"""Beyond it, a double keeps less than 0.1 mm."""
+
+
+def load_model(
+    path: Path, millimetres: float | None = None, *, near_origin: bool = True, beside_unitless: bool = False
+) -> Model:
+    """Read a file of any format.
+
+    Args:
+        path: the file.
+        millimetres: how many the unit has that the user gives, for a file without one of its own.
+        near_origin: move it near the origin where it lies far away.
+        beside_unitless: the user may give the unit for another file; then this one may have its own.
+
+    Raises:
+        ReferenceFileError: there is no such file, it is damaged, it holds no shapes, or it has a unit of its own where
+            one is given.
+    """
+    checked_format_of(path)
+    model = cast(PackedModel, read_guarded("model", path, millimetres)).unpack()
+    if millimetres is not None and model.own_unit and not beside_unitless:
+        raise refuse_given(path.name, model.unit)
+    if not model.parts:
+        raise ReferenceFileError(
+            f"'{path.name}' holds neither faces nor curves: export the faces of the skin and try again."
+        )
+    return _near_origin(model) if near_origin else model
+
+
+def _near_origin(model: Model) -> Model:
+    """Move a model that lies far from the origin, by whole metres, and note it."""
+    origin = far_origin([part.shape for part in model.parts], model.source)
+    if origin is None:
+        return model
+    back = (-origin[0], -origin[1], -origin[2])
+    parts = tuple(replace(part, shape=shifted(part.shape, back)) for part in model.parts)
+    return replace(model, parts=parts, origin=origin).with_notes([origin_note(model.source, origin)])
+
+
+def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] | None:
+    """The point, in whole metres, that should become the origin of shapes far from it; None where it may stay.
+
+    Raises:
+        ReferenceFileError: they lie where no double can hold a millimetre.
+    """
+    box = Bnd_Box()
+    try:
+        BRepBndLib.Add_s(compound_of(shapes), box, False)
+    except Standard_Failure as error:
+        raise ReferenceFileError(
+            f"'{source}' holds a shape that the CAD kernel cannot measure ({error}): repair it and export it again."
+        ) from error
+    if box.IsVoid():
+        return None
+    bounds = np.array(box.Get())
+    if not np.isfinite(bounds).all() or np.abs(bounds).max() > LARGEST_COORDINATE:
+        raise ReferenceFileError(
+            f"'{source}' reaches {np.abs(bounds).max():.3g} mm from the origin, farther than millimetres can be told "
+            "apart: look for a stray shape or a wrong unit."
+        )
+    middle = 0.5 * (bounds[:3] + bounds[3:])
+    if np.linalg.norm(middle) < FAR:
+        return None
+    x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE + 0.0).tolist()  # a note that says -0 makes one wonder
+    return (x, y, z)
+
+
+def origin_note(source: str, origin: tuple[float, float, float]) -> str:
+    """What the report says of a model that was moved."""
+    x, y, z = origin
+    return (
+        f"'{source}' lies {np.linalg.norm(origin) / 1e6:.4g} km from its origin; all coordinates here are less by "
+        f"({x:.0f}, {y:.0f}, {z:.0f}) mm."
+    )

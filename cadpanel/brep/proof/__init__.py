@@ -1,0 +1,1 @@
+"""What a delivered STEP file shows when it is read back."""

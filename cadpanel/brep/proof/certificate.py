@@ -1,0 +1,309 @@
+"""The proof beside the delivery: panels.step and skins.step are read back and held against the expected numbers.
+
+Nothing is taken from the builder's memory: the two files, and numbers that the caller states (volumes, corners, seams).
+Corners are how an end is recognised: an end curve is the part of a skin's boundary whose vertices are the expected
+corners of that end. So a panel that has been moved, or a corner that is missing, shows before any gap is measured.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from cadpanel.brep.proof.parallel import Helper, inspect_files
+from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
+from cadpanel.geometry.curve_gap import CurvePieces, hausdorff_distances
+from cadpanel.geometry.shape import Array, edge_corners
+from cadpanel.geometry.tangency import edge_angles
+
+TANGENCY_LIMIT = 1e-9
+"""Radians between neighbouring patches, read back."""
+VOLUME_LIMIT = 1e-9
+"""Relative difference between the kernel's volume and the expected one."""
+POSITION_LIMIT = 1e-6
+"""Distance in mm of a corner from where it is expected, and of a solid's skin from the skin file's."""
+GAP_LIMIT = 1e-4
+"""How much wider than stated a seam may be, mm, and as a part of its gap: both are found by sampling, and where edges
+of different kinds stand far apart the farthest point lies between two samples."""
+FOLD_ANGLE = 0.1
+"""Radians; straight edges with a smaller angle between their faces are meant to be smooth; a sheet's own have more."""
+
+PatchKind = Literal["plane", "cone", "cylinder"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExpectedPanel:
+    """What a panel in the files must be.
+
+    Attributes:
+        name: its product name in both files.
+        volume: analytic volume of the sheet, mm3.
+        kinds: kinds of its patches in the order of the walk, as built.
+        corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
+        far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
+
+    Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
+    """
+
+    name: str
+    volume: float
+    kinds: tuple[PatchKind, ...]
+    corners: Array
+    far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExpectedSeam:
+    """Two edges that face each other.
+
+    Attributes:
+        panels: names of the two panels.
+        edges: which edge of each, for example "end 1" or "side 0".
+        gap: the gap along the whole seam that the report states, mm; None to measure only.
+    """
+
+    panels: tuple[str, str]
+    edges: tuple[str, str]
+    gap: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certificate:
+    """What reading both files back showed.
+
+    Attributes:
+        solids: number of solids in the panels' file.
+        skins: number of open shells in the skins' file.
+        valid: whether every shape passes the kernel's exact check and every solid is closed.
+        face_kinds: number of faces of each kind among the solids.
+        max_tangency_error: greatest angle in radians between neighbouring patches, solids and skins.
+        volume_error: greatest relative difference of a solid's volume from the expected one.
+        names_kept: whether both files hold exactly the expected names, each once.
+        max_corner_error: farthest corner of a skin from where it is expected, mm.
+        seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
+        max_seam_gap: the widest of them, mm; 0 without seams.
+        failures: one sentence for everything that does not hold, naming the panel.
+    """
+
+    solids: int
+    skins: int
+    valid: bool
+    face_kinds: dict[str, int]
+    max_tangency_error: float
+    volume_error: float
+    names_kept: bool
+    max_corner_error: float
+    seam_gaps: tuple[float, ...]
+    max_seam_gap: float
+    failures: tuple[str, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether everything that was expected was found."""
+        return not self.failures
+
+
+def certify(
+    panels_step: str | os.PathLike[str],
+    skins_step: str | os.PathLike[str],
+    panels: Sequence[ExpectedPanel],
+    seams: Sequence[ExpectedSeam] = (),
+    helper: Helper | None = None,
+) -> Certificate:
+    """Read both files and prove them against the expected numbers, with the help of an interpreter that runs already.
+
+    Raises:
+        DeliveryError: if a file cannot be read at all.
+    """
+    solids, skins = inspect_files(panels_step, skins_step, helper)
+    failures: list[str] = []
+    names_kept = _names_kept("solids", solids, panels, failures) & _names_kept("skins", skins, panels, failures)
+    solid_of, skin_of = ({facts.name: facts for facts in found} for found in (solids, skins))
+    chains = {panel.name for panel in panels if len(panel.kinds) > 1}
+    angles = [
+        _tangency([facts for facts in found if facts.name in chains], label, failures)
+        for found, label in ((solids, "solid"), (skins, "skin"))
+    ]
+    volume_error, corner_error = 0.0, 0.0
+    for panel in panels:
+        if panel.name in solid_of:
+            volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
+        if panel.name in skin_of:
+            corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
+        if panel.name in solid_of and panel.name in skin_of:
+            _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
+    gaps = _seam_gaps(panels, skin_of, seams, failures)
+    kinds = Counter[str]()
+    for facts in solids:
+        kinds.update(facts.face_kinds)
+    return Certificate(
+        solids=sum(facts.solids for facts in solids),
+        skins=sum(facts.shells for facts in skins),
+        valid=all(facts.valid for facts in (*solids, *skins)) and all(facts.closed for facts in solids),
+        face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
+        max_tangency_error=max(angles),
+        volume_error=volume_error,
+        names_kept=names_kept,
+        max_corner_error=corner_error,
+        seam_gaps=tuple(gaps),
+        max_seam_gap=max(gaps, default=0.0),
+        failures=tuple(failures),
+    )
+
+
+def _names_kept(label: str, found: Sequence[ShapeFacts], panels: Sequence[ExpectedPanel], failures: list[str]) -> bool:
+    there, wanted = Counter(facts.name for facts in found), Counter(panel.name for panel in panels)
+    for name in wanted - there:
+        failures.append(f"Panel '{name}' is missing among the {label}.")
+    for name in there - wanted:
+        failures.append(f"Panel '{name}' is among the {label} but is not expected there.")
+    return there == wanted
+
+
+def _tangency(found: Sequence[ShapeFacts], label: str, failures: list[str]) -> float:
+    """Greatest angle among the straight edges that are meant to be smooth, all shapes at once."""
+    if not found:
+        return 0.0
+    angles = edge_angles(
+        np.concatenate([facts.straight_edges for facts in found]),
+        np.concatenate([facts.edge_surfaces for facts in found]),
+    )
+    owner = np.repeat(np.arange(len(found)), [len(facts.straight_edges) for facts in found])
+    # On a skin every shared edge is meant to be smooth; on a solid the sheet's own edges are not.
+    smooth = angles < FOLD_ANGLE if label == "solid" else np.ones(len(angles), dtype=bool)
+    for index in np.unique(owner[smooth & (angles > TANGENCY_LIMIT)]):
+        worst = angles[smooth & (owner == index)].max()
+        failures.append(f"Panel '{found[index].name}': its {label} has a kink of {worst:.3g} rad between two patches.")
+    return float(angles[smooth].max(initial=0.0))
+
+
+def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
+    """Everything about one solid but its tangency; returns the relative error of its volume."""
+    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *_walls(panel) * ("plane",)))
+    # One patch meets no other smoothly; the walls of a polygon may, where its outline hardly turns.
+    smooth = int((edge_angles(facts.straight_edges, facts.edge_surfaces) < FOLD_ANGLE).sum())
+    wrongly_smooth = len(panel.kinds) > 1 and smooth != 2 * len(panel.kinds) - 2
+    error = abs(facts.volume / panel.volume - 1.0)
+    problems = {
+        f"holds {facts.solids} solids instead of one": facts.solids != 1,
+        "does not pass the kernel's exact check": not facts.valid,
+        "is not closed": not facts.closed,
+        f"has the faces {_described(found)}, expected {_described(wanted)}": wanted != +found,
+        f"has {smooth} smooth edges, expected {2 * len(panel.kinds) - 2}": wrongly_smooth,
+        f"has a volume of {facts.volume:.12g} mm3, expected {panel.volume:.12g}": not error <= VOLUME_LIMIT,
+    }
+    failures += [f"Panel '{panel.name}': its solid {problem}." for problem, present in problems.items() if present]
+    if facts.solids == 1:
+        _check_far_face(panel, facts, failures)
+    return error
+
+
+def _walls(panel: ExpectedPanel) -> int:
+    """Walls of the sheet: two ends and two sides, or one at each edge of a polygon."""
+    return 4 if len(panel.corners) == 2 else panel.corners.shape[1]
+
+
+def _check_far_face(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> None:
+    """Corners of the solid must lie where the thickness and the skin's side put the far face of each flat patch."""
+    corners = _walls(panel)  # a flat patch of a chain has four, a polygon one at each wall
+    for index, (point, normal) in enumerate(panel.far_planes, start=1):
+        off = np.sort(np.abs((facts.vertices - point) @ normal))
+        if not (len(off) >= corners and off[corners - 1] <= POSITION_LIMIT):
+            failures.append(
+                f"Panel '{panel.name}': the far face of its solid does not lie where the thickness and the skin's side "
+                f"put it (flat patch {index})."
+            )
+            return
+
+
+def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
+    """Everything about one skin but its tangency; returns how far its farthest corner is from the expected one."""
+    found, wanted = Counter(facts.face_kinds), Counter[str](panel.kinds)
+    shared, alone = len(facts.straight_edges), (facts.shells, facts.solids) == (1, 0)
+    corners = panel.corners.reshape(-1, 3)
+    error = max(_farthest(corners, facts.vertices), _farthest(facts.vertices, corners))
+    problems = {
+        f"holds {facts.shells} shells and {facts.solids} solids instead of one shell": not alone,
+        "does not pass the kernel's exact check": not facts.valid,
+        f"has the faces {_described(found)}, expected {_described(wanted)}": wanted != +found,
+        f"has {shared} straight shared edges, expected {len(panel.kinds) - 1}": shared != len(panel.kinds) - 1,
+        f"has a corner {error:.3g} mm away from where it is expected": not error <= POSITION_LIMIT,
+        "has boundary edges that are neither lines nor ellipses": facts.other_borders > 0,
+    }
+    failures += [f"Panel '{panel.name}': its skin {problem}." for problem, present in problems.items() if present]
+    return error
+
+
+def _described(kinds: dict[str, int]) -> str:
+    return ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()) if count) or "none"
+
+
+def _check_same_place(name: str, solid: ShapeFacts, skin: ShapeFacts, failures: list[str]) -> None:
+    """The skin's corners must be corners of the solid."""
+    apart = _farthest(skin.vertices, solid.vertices)
+    if not apart <= POSITION_LIMIT:
+        failures.append(f"Panel '{name}': its solid lies {apart:.3g} mm away from its skin.")
+
+
+def _farthest(points: Array, others: Array) -> float:
+    """Distance in mm of the point that is farthest from its nearest other; infinite if there is none to be near."""
+    apart = np.linalg.norm(points[:, None] - others[None], axis=-1).min(axis=1, initial=np.inf)
+    return float(apart.max(initial=0.0))
+
+
+def _seam_gaps(
+    panels: Iterable[ExpectedPanel],
+    skin_of: dict[str, ShapeFacts],
+    seams: Sequence[ExpectedSeam],
+    failures: list[str],
+) -> list[float]:
+    """Measured gap of each seam; one whose ends cannot be found fails and counts as infinitely wide."""
+    corners = {panel.name: panel.corners for panel in panels}
+    sides: list[tuple[CurvePieces, CurvePieces]] = []
+    measured: list[int] = []
+    for index, seam in enumerate(seams):
+        found = [
+            _edge_curve(skin_of[name], corners[name], edge) if name in skin_of and name in corners else None
+            for name, edge in zip(seam.panels, seam.edges, strict=True)
+        ]
+        if found[0] is None or found[1] is None:
+            failures.append(f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': an edge cannot be found on the skins.")
+            continue
+        sides.append((found[0], found[1]))
+        measured.append(index)
+    gaps = [float("inf")] * len(seams)
+    distances = hausdorff_distances([one for one, _ in sides], [two for _, two in sides])
+    for index, gap in zip(measured, distances.tolist(), strict=True):
+        gaps[index] = gap
+        stated = seams[index].gap
+        if stated is not None and not gap <= stated + GAP_LIMIT * (1.0 + stated):
+            first, second = seams[index].panels
+            failures.append(f"Seam '{first}' to '{second}': the gap is {gap:.6g} mm, {stated:.6g} mm are stated.")
+    return gaps
+
+
+def _edge_curve(skin: ShapeFacts, corners: Array, edge: str) -> CurvePieces | None:
+    """The boundary pieces whose two vertices are both nearest to corners of the edge; None unless they make it up."""
+    try:
+        own = edge_corners(corners, edge)
+    except ValueError:
+        return None
+    flat = corners.reshape(-1, 3)
+    nearest = flat[np.linalg.norm(skin.border_ends[:, :, None] - flat, axis=-1).argmin(axis=-1)]
+    chosen = (nearest[:, :, None] == own).all(axis=-1).any(axis=-1).all(axis=1)
+    if int(chosen.sum()) != len(own) - 1:
+        return None
+    border = skin.border
+    return CurvePieces(
+        centers=border.centers[chosen],
+        cosine_axes=border.cosine_axes[chosen],
+        sine_axes=border.sine_axes[chosen],
+        starts=border.starts[chosen],
+        stops=border.stops[chosen],
+        arcs=border.arcs[chosen],
+    )

@@ -1,0 +1,101 @@
+"""How a face is curved: flat, developable or doubly curved, by numbers that are measured on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec
+from OCP.TopAbs import TopAbs_IN
+
+from cadpanel.brep.faces.face_patch import Patch
+from cadpanel.brep.skin.face_cleanup import SkinFace
+from cadpanel.reference.polyline import cross, norm
+
+Array = NDArray[np.float64]
+Class = Literal["flat", "developable", "doubly curved"]
+
+FLAT = 0.1
+"""A face is flat when all of it lies this close to one plane, mm."""
+DEVELOPABLE = 1e-4
+"""A face is developable when its total Gaussian curvature is no more than this, steradians: so much of the unit sphere
+its normals cover, and a true cone's or cylinder's cover none. A square of 0.6 by 0.6 degrees is 1e-4."""
+GRID = 31
+INSIDE = 1e-9
+DEGENERATE = 1e-12
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Curvature:
+    """What was measured on a face.
+
+    Attributes:
+        kind: the class that follows from the numbers below.
+        off_plane: largest distance of the face to the plane that fits it best, mm.
+        total_gaussian: integral of the absolute Gaussian curvature, steradians.
+        smallest_radius: 1 over the largest principal curvature, mm; infinite on a plane.
+    """
+
+    kind: Class
+    off_plane: float
+    total_gaussian: float
+    smallest_radius: float
+
+
+def curvature_of(face: SkinFace) -> Curvature:
+    """Measure a face on a grid of GRID x GRID points of its parameter range, where they lie inside."""
+    points = np.concatenate([face.samples.points, *face.samples.edges])
+    off_plane = _off_plane(points)
+    gaussian, largest, areas = _principal(face.patch)
+    total = float(np.abs(gaussian) @ areas) / max(float(areas.sum()), np.finfo(float).tiny) * face.area
+    bend = float(largest.max(initial=0.0))
+    kind: Class = "flat" if off_plane <= FLAT else "developable" if total <= DEVELOPABLE else "doubly curved"
+    return Curvature(
+        kind=kind,
+        off_plane=off_plane,
+        total_gaussian=total,
+        smallest_radius=1.0 / bend if bend > DEGENERATE else np.inf,
+    )
+
+
+def _off_plane(points: Array) -> float:
+    offsets = points - points.mean(axis=0)
+    _, _, axes = np.linalg.svd(offsets, full_matrices=False)
+    return float(np.abs(offsets @ axes[-1]).max())
+
+
+def _principal(patch: Patch) -> tuple[Array, Array, Array]:
+    """Gaussian curvature (m,), largest principal curvature (m,) and area (m,) of the cells whose middles lie inside."""
+    parts = (np.arange(GRID) + 0.5) / GRID
+    parameters = patch.at(0, np.repeat(parts, GRID), np.tile(parts, GRID))
+    if not patch.whole:
+        inside = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds)))
+        kept = [inside.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in parameters.tolist()]
+        parameters = parameters[np.array(kept, dtype=np.bool_)]
+    su, sv, suu, svv, suv = _derivatives(patch, parameters)
+    normals = cross(su, sv)
+    sizes = norm(normals)
+    good = sizes > DEGENERATE * max(float(sizes.max(initial=0.0)), DEGENERATE)
+    su, sv, suu, svv, suv, sizes = (values[good] for values in (su, sv, suu, svv, suv, sizes))
+    normals = normals[good] / sizes[:, None]
+    e, f, g = (np.sum(a * b, axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
+    long, mixed, short = (np.sum(second * normals, axis=1) for second in (suu, suv, svv))
+    determinant = e * g - f * f
+    gaussian = (long * short - mixed * mixed) / determinant
+    mean = 0.5 * (e * short - 2.0 * f * mixed + g * long) / determinant
+    root = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
+    return gaussian, np.abs(mean) + root, sizes
+
+
+def _derivatives(patch: Patch, parameters: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """First and second derivatives Su, Sv, Suu, Svv, Suv, each (m, 3)."""
+    point, vectors = gp_Pnt(), tuple(gp_Vec() for _ in range(5))
+    numbers = []
+    for u, v in parameters.tolist():
+        patch.surface.D2(u, v, point, *vectors)
+        numbers.append([vector.Coord() for vector in vectors])
+    values = np.array(numbers, dtype=np.float64).reshape(-1, 5, 3)
+    return values[:, 0], values[:, 1], values[:, 2], values[:, 3], values[:, 4]

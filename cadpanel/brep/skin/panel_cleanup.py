@@ -1,0 +1,99 @@
+"""What is mended in panels that a file brings ready-made: the same as in faces that are to be cut, panel by panel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopoDS import TopoDS, TopoDS_Shape
+
+from cadpanel.brep.faces.creases import crease_of, has_breaks
+from cadpanel.brep.faces.face_patch import patch_of
+from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.skin.adjacency import WORTH_A_NOTE
+from cadpanel.brep.skin.face_cleanup import find_doubles, width_of_hair
+from cadpanel.reference.model import RawPanel
+from cadpanel.reference.outline import bridged_gap
+
+
+def mend_panels(
+    panels: Sequence[RawPanel], shapes: Sequence[TopoDS_Shape], source: str, tolerance: float
+) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
+    """Leave out faces of panels that have no width or lie on another one of their panel; look for gaps and creases.
+
+    Args:
+        panels: as sampled, with all their faces.
+        shapes: theirs, in the same order.
+        source: the file's name.
+        tolerance: within which a face lies on another one, and gaps between faces are bridged, mm.
+
+    Returns:
+        The panels, none of them empty, and a note on each kind of thing that was found.
+    """
+    mended, hairs, doubled, creased = [], [], [], []
+    for panel, shape in zip(panels, shapes, strict=True):
+        widths = {place: width_of_hair(face) for place, face in enumerate(panel.faces)}
+        narrow = {place: width for place, width in widths.items() if width is not None}
+        wide = [place for place, width in widths.items() if width is None]
+        faces = [TopoDS.Face_s(face) for face in shapes_of(shape, TopAbs_FACE)]
+        doubles = find_doubles([panel.faces[place] for place in wide], [faces[place] for place in wide], tolerance)
+        creased += _creases(panel.name, shape, source)
+        left_out = {*narrow, *(wide[second] for second in doubles)}
+        if not wide:  # the outline says what is wrong with it
+            mended.append(panel)
+            continue
+        kept = tuple(face for place, face in enumerate(panel.faces) if place not in left_out)
+        mended.append(replace(panel, faces=kept) if left_out else panel)
+        hairs += [
+            f"Face {place + 1} of panel '{panel.name}' of '{source}' is only {width:.2g} mm wide and is left out"
+            for place, width in narrow.items()
+        ]
+        doubled += [
+            f"Face {wide[second] + 1} of panel '{panel.name}' of '{source}' lies on its face {wide[first] + 1} and is "
+            "left out"
+            for second, first in sorted(doubles.items())
+        ]
+    return tuple(mended), (
+        *_first_of(hairs),
+        *_first_of(doubled),
+        *gap_notes(mended, source, tolerance),
+        *_first_of(creased),
+    )
+
+
+def _creases(name: str, shape: TopoDS_Shape, source: str) -> list[str]:
+    found = []
+    for place, face in enumerate(map(TopoDS.Face_s, shapes_of(shape, TopAbs_FACE)), start=1):
+        crease = crease_of(patch_of(face)) if has_breaks(BRepAdaptor_Surface(face)) else 0.0
+        if crease:
+            found.append(
+                f"Face {place} of panel '{name}' of '{source}' has a crease of {crease:.3g} degrees inside, which "
+                "counts as a part of its bend"
+            )
+    return found
+
+
+def gap_notes(panels: Sequence[RawPanel], source: str, tolerance: float) -> tuple[str, ...]:
+    """One note on all panels between whose faces a gap is bridged.
+
+    Args:
+        panels: as sampled.
+        source: the file's name.
+        tolerance: up to which gaps are bridged, mm.
+    """
+    gaping = [(gap, panel.name) for panel in panels if (gap := bridged_gap(panel, tolerance)) > WORTH_A_NOTE]
+    if not gaping:
+        return ()
+    gap, name = max(gaping, key=lambda found: found[0])
+    where = f"panel '{name}'" if len(gaping) == 1 else f"{len(gaping)} panels"
+    widest = f"by {gap:.2g} mm" if len(gaping) == 1 else f"the widest by {gap:.2g} mm in panel '{name}'"
+    return (f"Faces of {where} of '{source}' gape, {widest}; that is within the tolerance of {tolerance:g} mm.",)
+
+
+def _first_of(found: Sequence[str]) -> tuple[str, ...]:
+    """One note on what may have been found in hundreds of panels."""
+    if not found:
+        return ()
+    return (f"{found[0]} (the first of {len(found)} such faces)." if len(found) > 1 else f"{found[0]}.",)

@@ -1,0 +1,1 @@
+"""Faces split by edges, curves or faces, with proof that nothing was lost."""

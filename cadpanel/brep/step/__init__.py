@@ -1,0 +1,1 @@
+"""The STEP files that leave the house, written as text."""

@@ -1,0 +1,132 @@
+"""Products, assembly, colours and header around the topology: one product a panel, all placed where they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopoDS import TopoDS_Shape
+
+from cadpanel.brep.step.text import StepText, real, references, string
+from cadpanel.brep.step.topology import TopologyWriter
+
+Schema = Literal["AP242", "AP214"]
+
+_SCHEMAS = {
+    "AP242": (
+        "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }",
+        "ap242_managed_model_based_3d_engineering',2013",
+        "Managed model based 3d engineering",
+    ),
+    "AP214": (
+        "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }",
+        "automotive_design',2000",
+        "core data for automotive mechanical design processes",
+    ),
+}
+TIMESTAMP = "1970-01-01T00:00:00"
+"""Always the same, so that the same panels give the same file."""
+UNCERTAINTY = 1e-7
+"""Accuracy in mm that the file states for its geometry."""
+
+
+def step_file(
+    shapes: Sequence[tuple[str, TopoDS_Shape, tuple[float, float, float] | None]], title: str, schema: Schema
+) -> str:
+    """The whole file.
+
+    Raises:
+        UnsupportedGeometry: if a shape is not made of exact panels' geometry.
+    """
+    text = StepText()
+    schema_name, protocol, application = _SCHEMAS[schema]
+    frame = _Frame(text, protocol, application)
+    assembly = frame.product(title, "SHAPE_REPRESENTATION", [frame.origin])
+    styled = []
+    for number, (name, shape, color) in enumerate(shapes, start=1):
+        item = TopologyWriter(text).item(shape)
+        solid = shape.ShapeType() == TopAbs_SOLID
+        kind = "ADVANCED_BREP_SHAPE_REPRESENTATION" if solid else "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
+        part = frame.product(name, kind, [frame.origin, item])
+        frame.place(part, assembly, number, name)
+        if color is not None:
+            styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
+    if styled:
+        text.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})")
+    return _header(title, schema_name) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+def _header(title: str, schema_name: str) -> str:
+    return (
+        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('Exact developable panels'),'2;1');\n"
+        f"FILE_NAME({string(title)},'{TIMESTAMP}',(''),(''),'cadpanel','cadpanel','');\n"
+        f"FILE_SCHEMA(('{schema_name}'));\nENDSEC;\nDATA;\n"
+    )
+
+
+class _Frame:
+    """What all products of a file share: contexts, units, origin, colours."""
+
+    def __init__(self, text: StepText, protocol: str, application: str) -> None:
+        self._text = text
+        self._styles: dict[tuple[float, float, float], int] = {}
+        add = text.add
+        self._application = add(f"APPLICATION_CONTEXT('{application}')")
+        add(f"APPLICATION_PROTOCOL_DEFINITION('international standard','{protocol},#{self._application})")
+        self._product_context = add(f"PRODUCT_CONTEXT('',#{self._application},'mechanical')")
+        self._definition_context = add(f"PRODUCT_DEFINITION_CONTEXT('part definition',#{self._application},'design')")
+        length = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.))")
+        angle = add("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))")
+        solid_angle = add("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())")
+        uncertainty = add(
+            f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(UNCERTAINTY)}),#{length},"
+            "'distance_accuracy_value','confusion accuracy')"
+        )
+        self.context = add(
+            f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
+            f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid_angle}))REPRESENTATION_CONTEXT('',''))"
+        )
+        self.origin = self._placement()
+
+    def _placement(self) -> int:
+        point = self._text.add("CARTESIAN_POINT('',(0.,0.,0.))")
+        z_axis = self._text.add("DIRECTION('',(0.,0.,1.))")
+        x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
+        return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
+
+    def product(self, name: str, kind: str, items: Sequence[int]) -> tuple[int, int]:
+        """Product definition and shape representation of a new product."""
+        add, label = self._text.add, string(name)
+        product = add(f"PRODUCT({label},{label},'',(#{self._product_context}))")
+        add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))")
+        formation = add(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
+        definition = add(f"PRODUCT_DEFINITION('design','',#{formation},#{self._definition_context})")
+        shape = add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
+        representation = add(f"{kind}('',{references(items)},#{self.context})")
+        add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
+        return definition, representation
+
+    def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str) -> None:
+        """Put a part into the assembly where it is: both origins coincide."""
+        add = self._text.add
+        usage = add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)")
+        placed = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})")
+        identity = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{self.origin})")
+        relation = add(
+            f"(REPRESENTATION_RELATIONSHIP('','',#{part[1]},#{assembly[1]})"
+            f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{identity})SHAPE_REPRESENTATION_RELATIONSHIP())"
+        )
+        add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{placed})")
+
+    def style(self, color: tuple[float, float, float]) -> int:
+        """One style a colour, shared by all that wear it."""
+        if color not in self._styles:
+            add = self._text.add
+            rgb = add(f"COLOUR_RGB('',{','.join(real(float(part)) for part in color)})")
+            fill = add(f"FILL_AREA_STYLE_COLOUR('',#{rgb})")
+            area = add(f"FILL_AREA_STYLE('',(#{fill}))")
+            side = add(f"SURFACE_SIDE_STYLE('',(#{add(f'SURFACE_STYLE_FILL_AREA(#{area})')}))")
+            usage = add(f"SURFACE_STYLE_USAGE(.BOTH.,#{side})")
+            self._styles[color] = add(f"PRESENTATION_STYLE_ASSIGNMENT((#{usage}))")
+        return self._styles[color]

@@ -27,18 +27,18 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
+    from cadpanel.atomic.cone import fit_cone
+    from cadpanel.atomic.cylinder import fit_cylinder
+    from cadpanel.atomic.plane import fit_plane
+    from cadpanel.atomic.result import ConeFit, CylinderFit, PlaneFit
     from cadpanel.brep.building.chain_skin import build_skin
     from cadpanel.brep.building.sheet import build_solid
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.verify import Verification, verify
     from cadpanel.features.feature import Feature
     from cadpanel.features.patches import Cone, Cylinder, Plane
-    from cadpanel.fitting.atomic.cone import fit_cone
-    from cadpanel.fitting.atomic.cylinder import fit_cylinder
-    from cadpanel.fitting.atomic.plane import fit_plane
-    from cadpanel.fitting.atomic.result import ConeFit, CylinderFit, PlaneFit
-    from cadpanel.fitting.blend import Blend
-    from cadpanel.fitting.measures import Measures
+    from cadpanel.fitting.bends.asked import Blend
+    from cadpanel.fitting.measures.fit import Measures
     from cadpanel.fitting.result import FitResult
     from cadpanel.fitting.settings import FitSettings, Weights
     from cadpanel.geometry.shape import ConePatch, PanelShape, PlanePatch, PolygonShape
@@ -100,12 +100,12 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "delivery.verify": ("Verification", "verify"),
         "features.feature": ("Feature",),
         "features.patches": ("Cone", "Cylinder", "Plane"),
-        "fitting.atomic.cone": ("fit_cone",),
-        "fitting.atomic.cylinder": ("fit_cylinder",),
-        "fitting.atomic.plane": ("fit_plane",),
-        "fitting.atomic.result": ("ConeFit", "CylinderFit", "PlaneFit"),
-        "fitting.blend": ("Blend",),
-        "fitting.measures": ("Measures",),
+        "atomic.cone": ("fit_cone",),
+        "atomic.cylinder": ("fit_cylinder",),
+        "atomic.plane": ("fit_plane",),
+        "atomic.result": ("ConeFit", "CylinderFit", "PlaneFit"),
+        "fitting.bends.asked": ("Blend",),
+        "fitting.measures.fit": ("Measures",),
         "fitting.result": ("FitResult",),
         "fitting.settings": ("FitSettings", "Weights"),
         "geometry.shape": ("ConePatch", "PanelShape", "PlanePatch", "PolygonShape"),

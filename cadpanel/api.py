@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import Tilt
 from cadpanel.features.feature import Feature
-from cadpanel.fitting.blend import Blend
+from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.result import fit as fit_reference
 from cadpanel.fitting.settings import FitSettings, Method, Weights
-from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import By, ReferenceSettings
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     import cadquery
 
     from cadpanel.brep.survey import Survey
-    from cadpanel.delivery.build import PanelSheet
-    from cadpanel.delivery.build import Progress as DeliveryProgress
-    from cadpanel.delivery.compare import Progress as CompareProgress
-    from cadpanel.delivery.comparison import ComparisonModel
-    from cadpanel.delivery.report import ReportModel
-    from cadpanel.delivery.sheet import Schema
+    from cadpanel.delivery.records.comparison import ComparisonModel
+    from cadpanel.delivery.records.report import ReportModel
+    from cadpanel.delivery.records.table1 import Progress as CompareProgress
+    from cadpanel.delivery.settings import Schema
+    from cadpanel.delivery.sheets import PanelSheet
+    from cadpanel.delivery.sheets import Progress as DeliveryProgress
 
 
 class FitKeywords(TypedDict, total=False):
@@ -168,8 +168,8 @@ def compare(
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
     """
-    from cadpanel.delivery.compare import compare as compare_reference
-    from cadpanel.delivery.compare import write_comparison_folder
+    from cadpanel.delivery.records.table1 import compare as compare_reference
+    from cadpanel.delivery.records.table1 import write_comparison_folder
 
     comparison = compare_reference(reference, _asked(settings, changes), progress=progress)
     if out is not None:
@@ -208,7 +208,7 @@ def deliver(
         ProofError: what was written is not what was promised; nothing is left.
     """
     from cadpanel.delivery.deliver import deliver as deliver_result
-    from cadpanel.delivery.sheet import SheetSettings
+    from cadpanel.delivery.settings import SheetSettings
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
     return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
@@ -284,7 +284,7 @@ def write_step(
         DeliveryError: the file cannot be written.
         SettingsError: the thickness, side or schema is none.
     """
-    from cadpanel.delivery.files import write_skins, write_solids
+    from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 
     built = _build(panels, thickness, skin_side, schema)
     (write_skins if skins else write_solids)(Path(path), built, _title(panels), schema)
@@ -293,8 +293,8 @@ def write_step(
 def _build(
     panels: FitResult | AnyShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
-    from cadpanel.delivery.build import build_panels
-    from cadpanel.delivery.sheet import SheetSettings
+    from cadpanel.delivery.settings import SheetSettings
+    from cadpanel.delivery.sheets import build_panels
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
     return build_panels([panels] if isinstance(panels, PanelShape | PolygonShape) else panels.shapes, sheet)

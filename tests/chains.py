@@ -15,9 +15,9 @@ from cadpanel.features.polygon import Polygon
 from cadpanel.features.walk import Points
 from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley, dot
+from cadpanel.terms.corner_gap import Placement
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.drift import Limited, Outline
-from cadpanel.terms.gap import Placement
+from cadpanel.terms.limits.corner_drift import Limited, Outline
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.geometry.end_curves import EndCurves
 from cadpanel.geometry.frames import cross
-from cadpanel.geometry.seam import EndCurves
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 from cadpanel.reference.model import PanelReference, Reference, Seam
 

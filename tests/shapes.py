@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cadpanel.geometry.sections import axis_frame
+from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.shape import Array, ConePatch, PanelShape, Patch, PlanePatch
 
 CHAINS = {

@@ -13,10 +13,10 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import delivery_folder
-from cadpanel.delivery.report import ReportModel
-from cadpanel.delivery.sheet import Schema, SheetSettings
+from cadpanel.delivery.records.report import ReportModel
+from cadpanel.delivery.settings import Schema, SheetSettings
 from cadpanel.fitting.settings import FitSettings, Method
-from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.reference.settings import ReferenceSettings
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone, two-stage", "Fit all at once"

@@ -11,7 +11,7 @@ import typer
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt
-from cadpanel.fitting.blend import blends_of
+from cadpanel.fitting.bends.asked import blends_of
 from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.settings import By, ReferenceSettings, choices_of
 

@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from cadpanel.delivery.comparison import ComparisonModel
 from cadpanel.delivery.names import REPORT
-from cadpanel.delivery.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+from cadpanel.delivery.records.comparison import ComparisonModel
+from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
 
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5

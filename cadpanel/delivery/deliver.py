@@ -7,12 +7,11 @@ from collections import Counter
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
-from cadpanel.delivery.build import PanelSheet, Progress, build_panels, say_nothing
-from cadpanel.delivery.files import write_skins, write_solids
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
+from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 from cadpanel.delivery.proof import prove
-from cadpanel.delivery.records import (
+from cadpanel.delivery.records.from_fit import (
     baselines_record,
     panel_records,
     reference_record,
@@ -20,9 +19,10 @@ from cadpanel.delivery.records import (
     settings_record,
     solve_record,
 )
-from cadpanel.delivery.report import CertificateModel, ReportModel, TimingModel, write_report
-from cadpanel.delivery.sheet import SheetSettings
-from cadpanel.delivery.summary import summary
+from cadpanel.delivery.records.report import CertificateModel, ReportModel, TimingModel, write_report
+from cadpanel.delivery.records.summary import summary
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.sheets import PanelSheet, Progress, build_panels, say_nothing
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
 

@@ -10,9 +10,9 @@ import numpy as np
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.names import PANELS, SKINS
-from cadpanel.delivery.patch_records import PlanePatchModel
-from cadpanel.delivery.report import CertificateModel, PanelModel, SeamModel
-from cadpanel.geometry.buildable import SkinSide
+from cadpanel.delivery.records.patches import PlanePatchModel
+from cadpanel.delivery.records.report import CertificateModel, PanelModel, SeamModel
+from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.shape import Array
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from cadpanel.delivery.consistency import check_report
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
 from cadpanel.delivery.proof import prove
-from cadpanel.delivery.report import CertificateModel, ReportModel, read_report
+from cadpanel.delivery.records.consistency import check_report
+from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
 from cadpanel.errors import DeliveryError
 
 

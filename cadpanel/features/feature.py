@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.boundary import Edge, chain_edges
+from cadpanel.features.independence import refuse_dependent
 from cadpanel.features.numbers import Number
+from cadpanel.features.panel_edges import Edge, chain_edges
 from cadpanel.features.patches import Patch
-from cadpanel.features.rank import refuse_dependent
 from cadpanel.features.walk import Points, Walk, end_points, walk
 
 Array = NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.boundary import Edge, polygon_edges
 from cadpanel.features.numbers import Number
+from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
 from cadpanel.features.walk import Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.boundary import ARC_SHARES
+from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import Frames
 from cadpanel.geometry.frames import cayley, cayley_rates, cross, dot, point_velocity
 

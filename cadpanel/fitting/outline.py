@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from cadpanel.features.layout import Layout
 from cadpanel.features.polygon import Polygon
-from cadpanel.fitting.start import Start, end_plane
+from cadpanel.fitting.start.chains import Start, end_plane
 from cadpanel.geometry.frames import dot
 from cadpanel.reference.model import PanelReference, Reference
-from cadpanel.terms.drift import Limited, Outline
+from cadpanel.terms.limits.corner_drift import Limited, Outline
 from cadpanel.terms.state import State
 
 Array = NDArray[np.float64]

@@ -9,26 +9,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.features.catalogue import PanelFeature
+from cadpanel.features.distance import skin_normals
 from cadpanel.features.layout import Layout
-from cadpanel.features.skin import skin_normals
-from cadpanel.fitting.blend import Blend
-from cadpanel.fitting.limits import LEAST_WIDTH, natural_bounds
+from cadpanel.fitting.bends.asked import Blend
+from cadpanel.fitting.bends.taken import allowed_patches, check_blends, stretches
+from cadpanel.fitting.bounds import LEAST_WIDTH, natural_bounds
 from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.start import Start, start
-from cadpanel.fitting.stretches import allowed_patches, check_blends, stretches
+from cadpanel.fitting.start.chains import Start, start
 from cadpanel.reference.model import Reference
-from cadpanel.terms.arc import ArcGap
+from cadpanel.terms.arc_gap import ArcGap
+from cadpanel.terms.corner_gap import CornerGap, Placement
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.drift import DriftLimit, Outline
-from cadpanel.terms.gap import CornerGap, Placement
-from cadpanel.terms.mixed import MixedGap
-from cadpanel.terms.radius import RadiusLimit
+from cadpanel.terms.edge_gap import MixedGap
+from cadpanel.terms.limits.corner_drift import DriftLimit, Outline
+from cadpanel.terms.limits.flange_width import WidthLimit
+from cadpanel.terms.limits.min_radius import RadiusLimit
 from cadpanel.terms.rows import Term
 from cadpanel.terms.seams import SeamBatch, batches
 from cadpanel.terms.state import State
-from cadpanel.terms.width import WidthLimit
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.features.catalogue import PanelFeature
-from cadpanel.fitting.automatic import Choice, can_be_built
-from cadpanel.fitting.measures import Measures, measure
-from cadpanel.fitting.methods import Fitted, fit_concurrent, fit_local, fit_two_stage
+from cadpanel.fitting.feature_choice import Choice, can_be_built
+from cadpanel.fitting.measures.fit import Measures, measure
+from cadpanel.fitting.methods.concurrent import Fitted, fit_concurrent, fit_local, fit_two_stage
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes

@@ -10,7 +10,7 @@ from typing import Literal, get_args
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, PanelFeature, Tilt, for_corners
 from cadpanel.features.feature import Feature
-from cadpanel.fitting.blend import Blend, blends_of
+from cadpanel.fitting.bends.asked import Blend, blends_of
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""

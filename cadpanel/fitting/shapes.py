@@ -9,8 +9,8 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group
 from cadpanel.features.walk import Walk, cut_planes
 from cadpanel.fitting.problem import Problem
+from cadpanel.geometry.end_curves import EndCurves
 from cadpanel.geometry.frames import dot
-from cadpanel.geometry.seam import EndCurves
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
 from cadpanel.reference.model import Reference
 from cadpanel.terms.state import State

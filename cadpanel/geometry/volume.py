@@ -13,9 +13,9 @@ from typing import Literal
 
 import numpy as np
 
-from cadpanel.geometry.flat import polygon_area
+from cadpanel.geometry.cone_sections import ConeCut, axis_frame, cut_cone
 from cadpanel.geometry.frames import cross
-from cadpanel.geometry.sections import ConeCut, axis_frame, cut_cone
+from cadpanel.geometry.polygon_checks import polygon_area
 from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
 
 SWEEP_NODES = 48

@@ -8,16 +8,16 @@ from numbers import Real
 import numpy as np
 
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.reference.contacts import after_flipping, find_contacts, refuse_duplicates
-from cadpanel.reference.ends import first_ends, outer_faces
+from cadpanel.geometry.polyline import norm
+from cadpanel.reference.alignment import align, find_seams, orient
+from cadpanel.reference.ends_and_outside import first_ends, outer_faces
 from cadpanel.reference.junctions import part_sides
 from cadpanel.reference.model import RawPanel, Reference
-from cadpanel.reference.orient import align, find_seams, orient
+from cadpanel.reference.near_misses import unmet_notes
+from cadpanel.reference.oriented_panel import Sheet, sheet
 from cadpanel.reference.outline import find_outline
 from cadpanel.reference.overlaps import refuse_overlaps
-from cadpanel.reference.polyline import norm
-from cadpanel.reference.sheet import Sheet, sheet
-from cadpanel.reference.unmet import unmet_notes
+from cadpanel.reference.seam_finding import after_flipping, find_contacts, refuse_duplicates
 
 # Ends of panels that meet may lie this far apart in the file, mm.
 SEAM_TOLERANCE = 1.0

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from cadpanel.geometry.polyline import arc_length, norm, unit
+from cadpanel.reference.inner_edges import Edge, positions_on
 from cadpanel.reference.outline import EVEN_PARTS, FOUR, Outline, Side
-from cadpanel.reference.polyline import arc_length, norm, unit
-from cadpanel.reference.touching import Edge, positions_on
 
 Array = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import OutlineError
+from cadpanel.geometry.polyline import end_tangents, interpolate, norm, unit
+from cadpanel.reference.inner_edges import Contact, Edge, free_edges, panel_edges, split_at_vertices
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline_faults import check_faces, check_loops, narrowest, refuse_hairs
-from cadpanel.reference.polyline import end_tangents, interpolate, norm, unit
-from cadpanel.reference.touching import Contact, Edge, free_edges, panel_edges, split_at_vertices
 
 Array = NDArray[np.float64]
 

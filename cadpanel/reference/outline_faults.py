@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.errors import OutlineError, PanelError
+from cadpanel.geometry.polyline import arc_lengths, cross, distances_to_polylines
+from cadpanel.reference.inner_edges import Edge
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.polyline import arc_lengths, cross, distances_to_polylines
-from cadpanel.reference.touching import Edge
 
 Array = NDArray[np.float64]
 

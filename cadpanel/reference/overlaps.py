@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cadpanel.errors import PanelError
-from cadpanel.reference.polyline import cross, distances_to_curves, norm, unit
-from cadpanel.reference.sheet import Sheet
+from cadpanel.geometry.polyline import cross, distances_to_curves, norm, unit
+from cadpanel.reference.oriented_panel import Sheet
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]

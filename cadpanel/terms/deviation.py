@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.features.distance import assign, patch_distance, patch_distance_inner, patch_outer
 from cadpanel.features.layout import Group, Layout
-from cadpanel.features.skin import assign, patch_distance, patch_distance_inner, patch_outer
 from cadpanel.features.walk import Rulings, Walk
 from cadpanel.geometry.cone import INNER, plane_distance
 from cadpanel.solver.blocks import Normal

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.boundary import ARC_SHARES, Edge
 from cadpanel.features.layout import Layout
+from cadpanel.features.panel_edges import ARC_SHARES, Edge
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.intp]

@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from cadpanel.features.distance import patch_outer
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
-from cadpanel.features.skin import patch_outer
 from cadpanel.features.walk import Walk, cut_plane_rates, cut_planes
 from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
 from cadpanel.geometry.frames import dot

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.sparse import coo_array, csr_array, vstack
 
-from cadpanel.fitting.methods import fit_local, weighted_objective
+from cadpanel.fitting.methods.concurrent import fit_local, weighted_objective
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings, Weights

@@ -22,7 +22,7 @@ from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKi
 from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.shape import ConePatch, PanelShape
-from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.slender_cones import straighten
 from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import folded_panel, moved, random_panel
 

@@ -24,7 +24,7 @@ from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import PanelError, ReferenceFileError
-from cadpanel.reference.polyline import distances_to_polylines
+from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import write_shape
 

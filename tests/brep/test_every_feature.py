@@ -15,8 +15,8 @@ from cadpanel.brep.building.sheet import build_panel, volume_of
 from cadpanel.brep.proof.shape_facts import inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.features.catalogue import feature
+from cadpanel.geometry.kink import edge_angles, surface_normals
 from cadpanel.geometry.shape import ConePatch, PolygonShape
-from cadpanel.geometry.tangency import edge_angles, surface_normals
 from cadpanel.geometry.volume import sheet_volume, skin_area
 from tests.instances import NAMES, TAPERED, random_polygon, random_shapes
 

@@ -14,7 +14,7 @@ from cadpanel.brep.curves.pieces import CLOSE
 from cadpanel.brep.curves.polyline_joining import polyline_edge
 from cadpanel.brep.files.model import Label, ModelCurve, compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.reference.polyline import distances_to_polylines
+from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_drawn_curves import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw
 from tests.model_files import STRIP, strip_faces, write_labelled, write_shape

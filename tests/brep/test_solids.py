@@ -14,10 +14,10 @@ from cadpanel.brep.building.chain_skin import build_skin
 from cadpanel.brep.building.sheet import build_panel, build_solid, volume_of
 from cadpanel.brep.proof.shape_facts import inspect
 from cadpanel.errors import PanelError
-from cadpanel.geometry.buildable import SkinSide
+from cadpanel.geometry.chain_checks import SkinSide
+from cadpanel.geometry.kink import edge_angles, surface_normals
 from cadpanel.geometry.shape import ConePatch
-from cadpanel.geometry.straighten import straighten
-from cadpanel.geometry.tangency import edge_angles, surface_normals
+from cadpanel.geometry.slender_cones import straighten
 from cadpanel.geometry.volume import sheet_volume, skin_area
 from tests.shapes import CHAINS, folded_panel, random_panel
 

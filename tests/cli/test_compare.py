@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cadpanel.delivery.comparison import read_comparison
+from cadpanel.delivery.records.comparison import read_comparison
 from tests.cli.conftest import Run
 
 

@@ -21,10 +21,10 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.delivery.build import PanelSheet
-from cadpanel.delivery.files import write_solids
-from cadpanel.delivery.report import read_report
-from cadpanel.delivery.sheet import Schema
+from cadpanel.delivery.outputs.step_files import write_solids
+from cadpanel.delivery.records.report import read_report
+from cadpanel.delivery.settings import Schema
+from cadpanel.delivery.sheets import PanelSheet
 from tests.cli.conftest import Run
 from tests.reference_shapes import Array, Lip, kernel_face, kernel_lip, strip, write_products
 

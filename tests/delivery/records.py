@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cadpanel.delivery.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel
-from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PlanePatchModel
-from cadpanel.delivery.report import (
+from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel
+from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
+from cadpanel.delivery.records.report import (
     BaselinesModel,
     CertificateModel,
     PanelModel,

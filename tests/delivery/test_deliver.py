@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cadpanel.delivery.build import build_panels
-from cadpanel.delivery.consistency import check_report
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
-from cadpanel.delivery.patch_records import ConePatchModel, CylinderPatchModel, PlanePatchModel
-from cadpanel.delivery.patches import patch_models
-from cadpanel.delivery.records import panel_records
-from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.delivery.records.consistency import check_report
+from cadpanel.delivery.records.from_fit import panel_records
+from cadpanel.delivery.records.from_shape import patch_models
+from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
 from cadpanel.fitting.result import fit

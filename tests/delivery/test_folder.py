@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from cadpanel.delivery.folder import MARKS_OF_A_DELIVERY, delivery_folder
-from cadpanel.delivery.jsonfile import Record, write_json
+from cadpanel.delivery.records.jsonfile import Record, write_json
 from cadpanel.errors import DeliveryError, PanelError
 
 MARK = '{\n  "schema": "cadpanel.report/1"\n}\n'

@@ -10,10 +10,10 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from cadpanel.brep.read import read_reference
-from cadpanel.delivery.consistency import check_report
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.names import REPORT
-from cadpanel.delivery.report import ReportModel, read_report, write_report
+from cadpanel.delivery.records.consistency import check_report
+from cadpanel.delivery.records.report import ReportModel, read_report, write_report
 from cadpanel.delivery.verify import verify
 from cadpanel.fitting.result import FitResult, fit
 from cadpanel.fitting.settings import FitSettings

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from cadpanel.delivery.comparison import read_comparison, write_comparison
-from cadpanel.delivery.report import SummaryModel, read_report, write_report
+from cadpanel.delivery.records.comparison import read_comparison, write_comparison
+from cadpanel.delivery.records.report import SummaryModel, read_report, write_report
 from cadpanel.errors import DeliveryError
 from tests.delivery.records import SUMMARY, a_comparison, a_report
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.boundary import ARC_SHARES
+from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.walk import Rulings, cut_planes, end_points
 from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
 from cadpanel.geometry.frames import cross, dot

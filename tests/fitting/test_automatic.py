@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cadpanel.features.catalogue import feature
-from cadpanel.fitting import automatic
-from cadpanel.fitting.automatic import CHEAPEST_FIRST, Choice
+from cadpanel.fitting import feature_choice
+from cadpanel.fitting.feature_choice import CHEAPEST_FIRST, Choice
 from cadpanel.fitting.result import fit
 from cadpanel.fitting.settings import FitSettings
 from tests.instances import random_polygon, random_shapes
@@ -69,7 +69,7 @@ def test_when_all_are_taken_away_it_says_so():
 
 def test_panels_that_cannot_be_built_among_their_neighbours_get_another_feature(monkeypatch):
     """What cannot be built is told by the builder; here it refuses every cylinder."""
-    built = automatic.can_be_built
+    built = feature_choice.can_be_built
     refused = lambda shape: shape.feature != "cylinder" and built(shape)  # noqa: E731
     monkeypatch.setattr("cadpanel.fitting.result.can_be_built", refused)
     result = fit(alone(random_shapes(feature("cylinder"), 2, 1)[0]), CLOSE)

@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import cadpanel as cp
-from cadpanel.fitting.blend import Blend, blends_of
+from cadpanel.fitting.bends.asked import Blend, blends_of
+from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.result import fit
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.stretches import missed_blend, taken
+from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.shape import ConePatch
-from cadpanel.reference.polyline import arc_length
 from tests.instances import random_polygon
 from tests.known_panels import alone, sampled
 from tests.shapes import folded_panel, random_panel

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cadpanel.features.catalogue import feature, polygon
-from cadpanel.fitting.measures import measure
-from cadpanel.fitting.methods import fit_local
+from cadpanel.fitting.measures.fit import measure
+from cadpanel.fitting.methods.concurrent import fit_local
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings

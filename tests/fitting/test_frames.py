@@ -6,9 +6,9 @@ import pytest
 from cadpanel.features.catalogue import feature, polygon
 from cadpanel.features.layout import Layout
 from cadpanel.features.walk import walk
-from cadpanel.fitting.frames import reframe
 from cadpanel.fitting.samples import SampleArrays
-from cadpanel.fitting.start import start
+from cadpanel.fitting.start.chains import start
+from cadpanel.fitting.start.frames import reframe
 from cadpanel.geometry.frames import cayley, cross
 from tests.instances import NAMES, random_polygon, random_shapes
 from tests.known_panels import alone, moved

@@ -11,13 +11,13 @@ import pytest
 
 from cadpanel.brep.read import read_reference
 from cadpanel.features.catalogue import feature, polygon
-from cadpanel.fitting.measures import measure
-from cadpanel.fitting.methods import fit_concurrent, fit_local
+from cadpanel.fitting.measures.fit import measure
+from cadpanel.fitting.methods.concurrent import fit_concurrent, fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.result import fit, keeps_limits
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.buildable import check_buildable
+from cadpanel.geometry.chain_checks import check_buildable
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from cadpanel.reference.model import Seam
 from tests.grids import dome, write_grid, write_honeycomb, write_mixed_row

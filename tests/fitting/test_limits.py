@@ -7,10 +7,10 @@ from cadpanel.features.catalogue import feature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group, Layout
 from cadpanel.features.patches import Cone, Plane
-from cadpanel.fitting.limits import LEAST_SHARE, LEAST_WIDTH, STEEPEST, natural_bounds
-from cadpanel.terms.radius import RadiusLimit
+from cadpanel.fitting.bounds import LEAST_SHARE, LEAST_WIDTH, STEEPEST, natural_bounds
+from cadpanel.terms.limits.flange_width import WidthLimit
+from cadpanel.terms.limits.min_radius import RadiusLimit
 from cadpanel.terms.state import State
-from cadpanel.terms.width import WidthLimit
 from tests.chains import FEATURES, random_unknowns
 
 LENGTH = 2000.0

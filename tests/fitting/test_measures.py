@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from cadpanel.features.catalogue import CATALOGUE, feature, polygon
-from cadpanel.fitting.measures import measure
-from cadpanel.fitting.methods import fit_local
+from cadpanel.fitting.measures.fit import measure
+from cadpanel.fitting.methods.concurrent import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.shape import PolygonShape

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cadpanel.fitting.methods import fit_concurrent, fit_local, fit_two_stage
+from cadpanel.fitting.methods.concurrent import fit_concurrent, fit_local, fit_two_stage
 from cadpanel.fitting.result import fit
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes

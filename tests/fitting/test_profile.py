@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.fitting.profile import SHORTEST, curved_runs, cut_profile
+from cadpanel.fitting.start.segmentation import SHORTEST, curved_runs, cut_profile
 
 few = settings(max_examples=15)
 seeds = st.integers(0, 10_000)

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.fitting.measures import measure
-from cadpanel.fitting.methods import fit_local
+from cadpanel.fitting.measures.fit import measure
+from cadpanel.fitting.methods.concurrent import fit_local
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import ConePatch

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cadpanel.delivery.build import build_panels
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.files import write_solids
 from cadpanel.delivery.names import PANELS, REPORT, SKINS
-from cadpanel.delivery.report import ReportModel, read_report
-from cadpanel.delivery.sheet import SheetSettings
+from cadpanel.delivery.outputs.step_files import write_solids
+from cadpanel.delivery.records.report import ReportModel, read_report
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.sheets import build_panels
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.shape import AnyShape
 from tests.delivered import fitted

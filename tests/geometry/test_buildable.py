@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.geometry.buildable import check_buildable, check_skin
+from cadpanel.geometry.chain_checks import check_buildable, check_skin
 from cadpanel.geometry.shape import ConePatch
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 

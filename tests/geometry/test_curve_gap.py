@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from cadpanel.geometry.curve_gap import CurvePieces, hausdorff_distances
-from cadpanel.geometry.sections import axis_frame, cut_cone, elliptic_section
+from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
+from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
 from cadpanel.geometry.shape import ConePatch, PanelShape
 from tests.shapes import folded_panel, moved, random_panel
 

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.geometry.buildable import check_buildable, check_skin, other_face
-from cadpanel.geometry.flat import FLATNESS, check_polygon, polygon_area
+from cadpanel.geometry.chain_checks import check_buildable, check_skin, other_face
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH, THICKEST_SHEET, THINNEST_SHEET
+from cadpanel.geometry.polygon_checks import FLATNESS, check_polygon, polygon_area
 from cadpanel.geometry.shape import PolygonShape, edge_corners
-from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.slender_cones import straighten
 from cadpanel.geometry.volume import sheet_volume, skin_area
 from tests.instances import random_polygon
 from tests.shapes import folded_panel

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.sections import axis_frame, cut_cone, elliptic_section, radius_range
+from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section, radius_range
 from cadpanel.geometry.shape import ConePatch, PanelShape
 from tests.shapes import folded_panel, random_panel
 

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.buildable import check_skin
+from cadpanel.geometry.chain_checks import check_skin
 from cadpanel.geometry.shape import ConePatch
-from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.slender_cones import straighten
 from tests.shapes import CHAINS, random_panel
 
 

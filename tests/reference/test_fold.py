@@ -5,8 +5,8 @@ import pytest
 
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
-from cadpanel.reference.fold import GENTLE, LEAST_FOLD, LEAST_ROLL, check_corners, check_fold
 from cadpanel.reference.model import PanelReference, RawPanel
+from cadpanel.reference.suitability import GENTLE, LEAST_FOLD, LEAST_ROLL, check_corners, check_fold
 from tests.reference_shapes import Lip, raw_panel, sampled_face, sheet_of
 
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from cadpanel.reference.assemble import assemble
-from cadpanel.reference.ends import CLEARLY_FOLDED
+from cadpanel.reference.ends_and_outside import CLEARLY_FOLDED
 from cadpanel.reference.model import RawPanel
 from tests.reference_shapes import (
     moved,

@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
+from cadpanel.reference.oriented_panel import Sheet, sheet
 from cadpanel.reference.outline import EVEN_PARTS, Side, find_outline
 from cadpanel.reference.overlaps import _loop, refuse_overlaps
-from cadpanel.reference.sheet import Sheet, sheet
 from tests.reference.test_unmet import tile
 from tests.reference_shapes import (
     Lip,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.reference.polyline import distances_to_curves
+from cadpanel.geometry.polyline import distances_to_curves
 
 
 def helix(parts, radius, turn, pitch):

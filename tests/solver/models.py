@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.solver.blocks import BlockPattern, Normal
-from cadpanel.solver.hold import Hold
 from cadpanel.solver.levenberg_marquardt import Bounds
+from cadpanel.solver.tolerance_weights import Hold
 
 Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import NonlinearConstraint, minimize
 
-from cadpanel.solver.hold import Hold
-from cadpanel.solver.tolerances import Schedule, hold_tolerances
+from cadpanel.solver.constrained import Schedule, hold_tolerances
+from cadpanel.solver.tolerance_weights import Hold
 from tests.solver.models import HeldChain, HeldPoints
 
 # The balance ends where the free cost is at rest within this share and no vector is further out than this share.

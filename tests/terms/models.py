@@ -15,11 +15,11 @@ from cadpanel.features.polygon import Polygon
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.blocks import Normal
-from cadpanel.terms.arc import ArcGap
+from cadpanel.terms.arc_gap import ArcGap
+from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.drift import DriftLimit, Limited, Outline
-from cadpanel.terms.gap import CornerGap
-from cadpanel.terms.mixed import MixedGap
+from cadpanel.terms.edge_gap import MixedGap
+from cadpanel.terms.limits.corner_drift import DriftLimit, Limited, Outline
 from cadpanel.terms.rows import Rows, Term
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.boundary import ARC_SHARES
-from cadpanel.features.skin import assign, skin_normals
+from cadpanel.features.distance import assign, skin_normals
+from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.deviation import Deviation
 from tests.chains import CHAINS, POLYGONS

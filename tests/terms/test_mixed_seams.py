@@ -17,7 +17,7 @@ from cadpanel.features.walk import cut_planes
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import PanelShape
-from cadpanel.terms.mixed import MixedGap
+from cadpanel.terms.edge_gap import MixedGap
 from tests.chains import mixed_unknowns, problem_of
 from tests.terms.models import (
     DIFFERENCES,

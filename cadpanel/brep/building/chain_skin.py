@@ -13,10 +13,10 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Vertex
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.edges import shell_of
 from cadpanel.brep.building.polygon_sheet import polygon_skin
-from cadpanel.geometry.buildable import check_skin
-from cadpanel.geometry.sections import EllipticSection, axis_frame, cut_cone, elliptic_section
+from cadpanel.geometry.chain_checks import check_skin
+from cadpanel.geometry.cone_sections import EllipticSection, axis_frame, cut_cone, elliptic_section
 from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
-from cadpanel.geometry.straighten import straighten
+from cadpanel.geometry.slender_cones import straighten
 
 _BUILDER = BRep_Builder()
 

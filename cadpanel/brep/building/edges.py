@@ -14,8 +14,8 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
 
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.geometry.cone_sections import EllipticSection
 from cadpanel.geometry.frames import cross
-from cadpanel.geometry.sections import EllipticSection
 from cadpanel.geometry.shape import Array
 
 _BUILDER = BRep_Builder()

@@ -14,9 +14,9 @@ from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
 from cadpanel.brep.building.edges import shell_of
 from cadpanel.brep.building.polygon_sheet import polygon_faces
-from cadpanel.geometry.buildable import SkinSide, check_buildable, other_face
+from cadpanel.geometry.chain_checks import SkinSide, check_buildable, other_face
 from cadpanel.geometry.shape import AnyShape, Array, PanelShape, PolygonShape
-from cadpanel.geometry.straighten import Straightened, straighten
+from cadpanel.geometry.slender_cones import Straightened, straighten
 
 _BUILDER = BRep_Builder()
 

@@ -15,7 +15,7 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from scipy.interpolate import BSpline
 
 from cadpanel.brep.kernel import points as kernel
-from cadpanel.geometry.sections import AxisFrame, EllipticSection
+from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
 from cadpanel.geometry.shape import Array
 
 ARC_DEGREE = 11

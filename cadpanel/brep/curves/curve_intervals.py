@@ -14,7 +14,7 @@ from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.closest_points import Feet, Search
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.faces.inside_test import Trim
-from cadpanel.reference.polyline import norm
+from cadpanel.geometry.polyline import norm
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from cadpanel.brep.curves.pieces import CLOSE, Piece
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.face_patch import Patch, geometry
 from cadpanel.brep.splitting.split_by_pcurves import DEGREE, spline_curve
-from cadpanel.reference.polyline import arc_length, norm, unit
+from cadpanel.geometry.polyline import arc_length, norm, unit
 
 Array = NDArray[np.float64]
 

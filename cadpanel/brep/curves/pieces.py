@@ -18,7 +18,7 @@ from scipy.interpolate import make_interp_spline
 
 from cadpanel.brep.curves.polyline_smoothing import FACET, SmoothCurve, corners, missed, smooth_curve
 from cadpanel.brep.splitting.split_by_pcurves import DEGREE
-from cadpanel.reference.polyline import norm, unit
+from cadpanel.geometry.polyline import norm, unit
 
 Array = NDArray[np.float64]
 

@@ -22,7 +22,7 @@ from OCP.TopoDS import TopoDS_Edge
 
 from cadpanel.brep.curves.polyline_smoothing import missed
 from cadpanel.brep.files.model import ModelCurve
-from cadpanel.reference.polyline import norm, unit
+from cadpanel.geometry.polyline import norm, unit
 
 Array = NDArray[np.float64]
 

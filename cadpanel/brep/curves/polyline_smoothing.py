@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline, splprep
 
-from cadpanel.reference.polyline import arc_length, norm, unit
+from cadpanel.geometry.polyline import arc_length, norm, unit
 
 Array = NDArray[np.float64]
 _Fitted = tuple[Array, list[Array], int]

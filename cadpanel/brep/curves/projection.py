@@ -21,7 +21,7 @@ from cadpanel.brep.faces.inside_test import Trim
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.face_cleanup import SkinFace
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import unit
+from cadpanel.geometry.polyline import unit
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cadpanel.brep.curves.pcurve_fit import SAME, Stretch
 from cadpanel.brep.faces.face_patch import Patch
-from cadpanel.reference.polyline import arc_length, norm, side_of
+from cadpanel.geometry.polyline import arc_length, norm, side_of
 
 Array = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ from cadpanel.brep.skin.ring import find_ring
 from cadpanel.brep.skin.split_by_planes import cut_by_planes
 from cadpanel.brep.skin.strip import find_strip
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import arc_length, norm
+from cadpanel.geometry.polyline import arc_length, norm
 
 Array = NDArray[np.float64]
 

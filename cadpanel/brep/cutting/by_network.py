@@ -25,7 +25,7 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import Pieces, area_of, length_of
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import cross, norm
+from cadpanel.geometry.polyline import cross, norm
 
 Array = NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.split_by_planes import cut_by_planes
 from cadpanel.brep.skin.strip import MIDDLE_POINTS, STEP, Cuts, find_strip
 from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.geometry.polyline import arc_length, interpolate, norm, unit
 from cadpanel.reference.assemble import LARGEST_TOLERANCE
-from cadpanel.reference.polyline import arc_length, interpolate, norm, unit
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopoDS import TopoDS_Edge
 from scipy.spatial import cKDTree
 
-from cadpanel.reference.polyline import arc_length, distances_to_polylines, norm
+from cadpanel.geometry.polyline import arc_length, distances_to_polylines, norm
 
 Array = NDArray[np.float64]
 

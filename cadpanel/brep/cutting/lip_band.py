@@ -19,7 +19,7 @@ from cadpanel.brep.skin.lips import Lip, follow_lip, lips_midway
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import Pieces
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import arc_length, cross, norm, unit
+from cadpanel.geometry.polyline import arc_length, cross, norm, unit
 
 Array = NDArray[np.float64]
 

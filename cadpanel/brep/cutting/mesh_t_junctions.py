@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cadpanel.brep.cutting.mesh_weld import Faces
-from cadpanel.reference.polyline import norm
+from cadpanel.geometry.polyline import norm
 
 Array = NDArray[np.float64]
 Edge = tuple[int, int]

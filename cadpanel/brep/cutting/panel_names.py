@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.brep.cutting.cut_panel import along_name, grid_name
-from cadpanel.reference.polyline import unit
+from cadpanel.geometry.polyline import unit
 
 Array = NDArray[np.float64]
 

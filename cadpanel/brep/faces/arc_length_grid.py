@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch
-from cadpanel.reference.polyline import cross, norm
+from cadpanel.geometry.polyline import cross, norm
 
 Array = NDArray[np.float64]
 

@@ -26,7 +26,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch
 from cadpanel.brep.files.model import shapes_of
-from cadpanel.reference.polyline import cross, norm
+from cadpanel.geometry.polyline import cross, norm
 
 Array = NDArray[np.float64]
 

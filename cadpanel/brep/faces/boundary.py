@@ -16,7 +16,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch, kernel_values
-from cadpanel.reference.polyline import cross, norm, unit
+from cadpanel.geometry.polyline import cross, norm, unit
 
 Array = NDArray[np.float64]
 

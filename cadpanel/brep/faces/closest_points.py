@@ -13,7 +13,7 @@ from cadpanel.brep.curves.pieces import CLOSE
 from cadpanel.brep.faces.area import spans_of
 from cadpanel.brep.faces.boundary import evaluate, unit_normals
 from cadpanel.brep.faces.face_patch import Patch
-from cadpanel.reference.polyline import norm
+from cadpanel.geometry.polyline import norm
 
 Array = NDArray[np.float64]
 

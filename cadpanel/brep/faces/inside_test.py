@@ -9,7 +9,7 @@ from OCP.TopAbs import TopAbs_OUT
 
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.kernel import points as kernel
-from cadpanel.reference.polyline import distances_to_polylines, norm, side_of
+from cadpanel.geometry.polyline import distances_to_polylines, norm, side_of
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cadpanel.brep.building.sheet import volume_of
-from cadpanel.geometry.curve_gap import CurvePieces
+from cadpanel.geometry.curve_hausdorff import CurvePieces
 from cadpanel.geometry.shape import Array
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.brep.faces.boundary import Edge
 from cadpanel.brep.skin.face_cleanup import SkinFace
-from cadpanel.reference.polyline import distances_to_curves, norm
+from cadpanel.geometry.polyline import distances_to_curves, norm
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from cadpanel.brep.skin.iso_strip import Lanes, find_lanes
 from cadpanel.brep.skin.split_by_planes import THROUGH, cut_by_planes
 from cadpanel.brep.skin.strip import Cuts, find_strip
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.polyline import arc_length, interpolate, norm
+from cadpanel.geometry.polyline import arc_length, interpolate, norm
 
 Array = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from OCP.TopAbs import TopAbs_IN
 
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.skin.face_cleanup import SkinFace
-from cadpanel.reference.polyline import cross, norm
+from cadpanel.geometry.polyline import cross, norm
 
 Array = NDArray[np.float64]
 Class = Literal["flat", "developable", "doubly curved"]

@@ -17,8 +17,8 @@ from cadpanel.brep.faces.face_patch import Patch, patch_of
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.model import ModelFace
 from cadpanel.errors import ReferenceFileError
+from cadpanel.geometry.polyline import arc_lengths, distances_to_curves
 from cadpanel.reference.model import FaceSamples
-from cadpanel.reference.polyline import arc_lengths, distances_to_curves
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.brep.faces.face_patch import Patch, equal_parts, lengths_along, rectangle
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.reference.polyline import norm
+from cadpanel.geometry.polyline import norm
 
 Array = NDArray[np.float64]
 

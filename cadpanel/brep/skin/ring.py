@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from cadpanel.brep.faces.face_patch import equal_parts, lengths_along
 from cadpanel.brep.skin.adjacency import Surface, levels
 from cadpanel.brep.skin.iso_strip import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
-from cadpanel.reference.polyline import cross
+from cadpanel.geometry.polyline import cross
 
 Array = NDArray[np.float64]
 

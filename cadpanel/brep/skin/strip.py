@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.errors import OutlineError, ReferenceFileError
+from cadpanel.geometry.polyline import arc_length, interpolate, norm, unit
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import Side, find_outline
-from cadpanel.reference.polyline import arc_length, interpolate, norm, unit
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,1 @@
+"""The files of a delivery, one kind a file."""

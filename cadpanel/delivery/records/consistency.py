@@ -1,0 +1,197 @@
+"""Does a report agree with itself? Everything in it that follows from other numbers in it is worked out again.
+
+What needs the reference (deviation, Hausdorff distance, drift) cannot be checked from a delivery alone; that the
+summary is the worst of its panels and seams can.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
+from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
+from cadpanel.features.catalogue import AUTO
+from cadpanel.geometry.shape import Array, edge_corners
+
+SAME_LENGTH = 1e-6
+"""Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
+SAME_ANGLE = 1e-6
+"""Degrees by which a patch's sweep may differ from what its corners, to the last digit of a double, enclose."""
+ON_PATCH = 1e-5
+"""Distance in mm of a corner from the patches that meet there."""
+
+
+def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[str, ...]:
+    """One sentence for everything in a report that does not follow from the rest of it, or from its files.
+
+    Args:
+        report: what was read.
+        certificate: what the files beside it show now.
+    """
+    panels = {panel.name: panel for panel in report.panels}
+    failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
+    failures += [
+        f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
+        for panel in report.panels
+        if panel.feature != report.settings.feature != AUTO
+    ]
+    failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
+    failures += _summary_faults(report)
+    failures += _certificate_faults(report.certificate, certificate)
+    return tuple(failures)
+
+
+def _patch_faults(panel: PanelModel) -> Iterator[str]:
+    corners = np.array(panel.corners)
+    for index, patch in enumerate(panel.patches):
+        own = corners[:, index : index + 2] if len(corners) == 2 else corners
+        off = float(np.abs(_distance(patch, own.reshape(-1, 3))).max())
+        if not off <= ON_PATCH:
+            yield (
+                f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) passes its corners "
+                f"at {off:.3g} mm."
+            )
+        elif isinstance(patch, ConePatchModel | CylinderPatchModel):
+            turned = _sweep(patch, corners[0, index : index + 2])
+            if not abs(turned - patch.sweep) <= SAME_ANGLE:
+                yield (
+                    f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) sweeps {patch.sweep:.6g} "
+                    f"degrees, its corners lie {turned:.6g} apart."
+                )
+
+
+def _sweep(patch: ConePatchModel | CylinderPatchModel, corners: Array) -> float:
+    """Angle in degrees by which the axis has to be turned about, right-handed, from the first corner to the second."""
+    axis = np.array(patch.axis)
+    offset = corners - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
+    first, second = offset - (offset @ axis)[:, None] * axis
+    return float(np.degrees(np.arctan2(np.cross(first, second) @ axis, first @ second)))
+
+
+def _distance(patch: PatchModel, points: Array) -> Array:
+    """(m,) signed distances of points (m, 3) to a patch's surface, and beyond the radii that are stated for it, mm."""
+    if not isinstance(patch, ConePatchModel | CylinderPatchModel):
+        return np.asarray((points - np.array(patch.point)) @ np.array(patch.normal))
+    offset = points - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
+    axis = np.array(patch.axis)
+    height = offset @ axis
+    radius = np.linalg.norm(offset - height[:, None] * axis, axis=-1)
+    beyond = np.maximum(np.maximum(patch.radius_min - radius, radius - patch.radius_max), 0.0)
+    if isinstance(patch, ConePatchModel):
+        angle = np.radians(patch.half_angle)
+        return np.asarray(np.maximum(np.abs(radius * np.cos(angle) - height * np.sin(angle)), beyond))
+    return np.asarray(np.maximum(np.abs(radius - patch.radius_max), beyond))
+
+
+def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str]:
+    name = f"Seam '{seam.panels[0]}' to '{seam.panels[1]}'"
+    gaps = np.array(seam.corner_gaps)
+    try:
+        first, second = (
+            edge_corners(np.array(panels[panel].corners), edge)
+            for panel, edge in zip(seam.panels, seam.edges, strict=True)
+        )
+    except ValueError as error:
+        yield f"{name}: {error}."
+        return
+    if len(gaps) == 2:
+        first, second = first[[0, -1]], second[[0, -1]]
+    if not first.shape == second.shape == (len(gaps), 3):
+        yield f"{name}: the report has {len(gaps)} corner gaps for {len(first)} and {len(second)} corners."
+        return
+    measured = np.linalg.norm(first - (second[::-1] if seam.reversed else second), axis=-1)
+    moved = sum(panels[name].moved for name in seam.panels)
+    off = float(np.abs(measured - gaps).max())
+    if not off <= SAME_LENGTH + moved:
+        yield f"{name}: the corner gaps in the report are off by {off:.3g} mm from its panels' corners."
+    if seam.max_corner_gap != gaps.max():
+        yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
+
+
+def _summary_faults(report: ReportModel) -> Iterator[str]:
+    summary = report.summary
+    worst: dict[str, float] = {
+        key: max((of(seam) for seam in report.seams), default=0.0) for key, of in _OF_SEAMS.items()
+    }
+    worst |= {key: max((of(panel) for panel in report.panels), default=0.0) for key, of in _OF_PANELS.items()}
+    for key, value in worst.items():
+        stated = float(getattr(summary, key))
+        if not abs(stated - value) <= SAME_LENGTH:
+            yield f"The summary's {key} is {stated:.6g}, the worst in the list is {value:.6g}."
+    yield from _tolerance_faults(report, summary)
+    yield from _deviation_faults(report, summary)
+
+
+_OF_SEAMS: dict[str, Callable[[SeamModel], float]] = {
+    "max_corner_gap": lambda seam: seam.max_corner_gap,
+    "max_seam_gap": lambda seam: seam.max_seam_gap,
+    "max_kink": lambda seam: seam.max_kink,
+}
+_OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
+    "max_deviation": lambda panel: panel.max_deviation,
+    "hausdorff": lambda panel: panel.hausdorff,
+    "max_corner_drift": lambda panel: panel.max_corner_drift,
+    "max_drift_along": lambda panel: panel.max_drift_along,
+    "max_free_edge_drift": lambda panel: panel.max_free_edge_drift,
+}
+
+
+def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
+    tolerance = report.settings.gap_tolerance
+    if tolerance is None:
+        return
+    widest = max(summary.max_corner_gap, summary.max_seam_gap)
+    deviation = report.settings.max_deviation
+    if summary.tolerance_met and deviation is not None and summary.max_deviation > deviation + SAME_LENGTH:
+        yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
+    if summary.tolerance_met and widest > tolerance:
+        yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
+    limits = (
+        ("along", summary.drift_along_percent, 100.0 * report.settings.drift_along),
+        ("across", summary.drift_across_percent, 100.0 * report.settings.drift_across),
+    )
+    beyond = [limit for limit in limits if limit[1] > limit[2] + SAME_LENGTH]
+    if summary.tolerance_met and beyond:
+        way, drift, limit = beyond[0]
+        yield f"The report calls its limits met, and a drift {way} in it is {drift:.6g} %, {limit:.6g} % are allowed."
+    far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
+    if (
+        not summary.tolerance_met
+        and not far
+        and not beyond
+        and widest < tolerance - SAME_LENGTH
+        and _well_within(limits)
+    ):
+        yield "The report calls its tolerance not met, and all its gaps and drifts are within their limits."
+
+
+def _well_within(limits: tuple[tuple[str, float, float], ...]) -> bool:
+    return all(drift < limit - SAME_LENGTH for _, drift, limit in limits)
+
+
+def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
+    """The deviation of all panels is a mean of theirs, and is stated as a multiple of the local fit's."""
+    each = [panel.rms_deviation for panel in report.panels]
+    if not min(each) - SAME_LENGTH <= summary.rms_deviation <= max(each) + SAME_LENGTH:
+        yield (
+            f"The summary's rms_deviation is {summary.rms_deviation:.6g}, those in the list go from {min(each):.6g} to "
+            f"{max(each):.6g}."
+        )
+    multiple, local = summary.local_rms_multiple, report.baselines.local.rms_deviation
+    if multiple is not None and not abs(multiple * local - summary.rms_deviation) <= SAME_LENGTH:
+        yield f"The summary's local_rms_multiple is {multiple:.6g}, the deviations do not make it so."
+
+
+def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
+    for key in ("solids", "skins", "valid", "face_kinds", "names_kept"):
+        was, now = getattr(stated, key), getattr(found, key)
+        if was != now:
+            yield f"The certificate in the report says {key} = {was}, the files show {now}."
+    if stated.failures:
+        yield f"The certificate in the report lists what does not hold: {stated.failures[0]}"
+    for key, limit in (("max_tangency_error", 1e-9), ("volume_error", 1e-9), ("max_seam_gap", SAME_LENGTH)):
+        was, now = getattr(stated, key), getattr(found, key)
+        if not abs(was - now) <= limit:
+            yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."

@@ -1,0 +1,189 @@
+"""From a fit and its built panels to the report's records: millimetres stay, radians become degrees."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from cadpanel.delivery.records.from_shape import patch_models, vector
+from cadpanel.delivery.records.report import (
+    BaselinesModel,
+    PanelModel,
+    ReferenceModel,
+    SeamModel,
+    Setting,
+    SettingsModel,
+    SolveModel,
+    WeightsModel,
+)
+from cadpanel.delivery.records.summary import summary
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.sheets import PanelSheet
+from cadpanel.features.feature import Feature
+from cadpanel.fitting.bends.asked import Blend
+from cadpanel.fitting.bends.taken import missed_blend, taken
+from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.model import PanelReference, Reference, Seam
+from cadpanel.reference.settings import ReferenceSettings
+
+# An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
+WORTH_A_NOTE = 0.02
+FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
+
+
+def reference_record(reference: Reference) -> ReferenceModel:
+    """The file and what it holds."""
+    return ReferenceModel(
+        file=reference.source,
+        panels=len(reference.panels),
+        seams=len(reference.seams),
+        notes=reference.notes,
+        reading=_reading(reference.settings),
+    )
+
+
+def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
+    """The settings that differ from their defaults; files by their names."""
+    usual = ReferenceSettings()
+    changed = {one.name: getattr(settings, one.name) for one in fields(settings)}
+    return {
+        name: value.name if isinstance(value, Path) else value
+        for name, value in changed.items()
+        if value != getattr(usual, name)
+    }
+
+
+def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSettings) -> SettingsModel:
+    """Everything that is needed to run the fit again."""
+    weights = settings.weights
+    return SettingsModel(
+        cadpanel_version=version("cadpanel"),
+        feature=settings.feature_name,
+        composition=tuple(map(repr, settings.feature.patches)) if isinstance(settings.feature, Feature) else None,
+        max_deviation=settings.max_deviation,
+        tilt=settings.tilt,
+        method=settings.method,
+        gap_tolerance=settings.gap_tolerance if weights is None else None,
+        drift_along=settings.drift_along,
+        drift_across=settings.drift_across,
+        min_radius=settings.min_radius,
+        blend=tuple(map(str, settings.blend)),
+        weights=None
+        if weights is None
+        else WeightsModel(gap=weights.gap, deviation=weights.deviation, drift=weights.drift),
+        restarts=settings.restarts,
+        seed=settings.seed,
+        seam_tolerance=reference.seam_tolerance,
+        thickness=sheet.thickness,
+        skin_side=sheet.skin_side,
+        step_schema=sheet.schema,
+    )
+
+
+def solve_record(result: FitResult) -> SolveModel:
+    """How the result was reached."""
+    return SolveModel(iterations=result.iterations, starts=result.starts, agreed=result.agreed)
+
+
+def baselines_record(result: FitResult) -> BaselinesModel:
+    """The methods that the result is held against, by the same measures and limits."""
+    return BaselinesModel(
+        local=summary(result.local, result.local, result.settings),
+        two_stage=summary(result.two_stage, result.local, result.settings),
+    )
+
+
+def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[PanelModel, ...]:
+    """Every panel as it was fitted and built."""
+    return tuple(
+        _panel(result, index, reference, panel)
+        for index, (reference, panel) in enumerate(zip(result.reference.panels, built, strict=True))
+    )
+
+
+def _panel(result: FitResult, index: int, reference: PanelReference, built: PanelSheet) -> PanelModel:
+    measures = result.measures
+    return PanelModel(
+        name=built.shape.name,
+        feature=built.shape.feature,
+        rms_deviation=float(measures.rms_deviation[index]),
+        max_deviation=float(measures.max_deviation[index]),
+        hausdorff=float(measures.hausdorff[index]),
+        max_corner_drift=float(measures.drift[index]),
+        max_drift_along=float(measures.drift_along[index]),
+        max_free_edge_drift=float(measures.drift_across[index]),
+        area=built.area,
+        volume=built.volume,
+        corners=tuple(tuple(vector(corner) for corner in row) for row in built.shape.corners()),
+        patches=patch_models(built.shape),
+        taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
+        moved=built.moved,
+        notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
+    )
+
+
+def _blend_note(reference: PanelReference, built: PanelSheet, blends: Sequence[Blend]) -> tuple[str, ...]:
+    """What to say of a panel whose bend is not where it was told to be."""
+    missed = missed_blend(reference, built.shape, blends)
+    if missed is None:
+        return ()
+    # The same on both ends is said once.
+    asked, became = (
+        " and ".join(dict.fromkeys(f"{first:.0f}-{last:.0f}" for first, last in places.tolist())) for places in missed
+    )
+    return (
+        f"Its bend was to be made of {asked} mm along its ends, and reaches over {became} mm: the drawing there does "
+        "not bend like that.",
+    )
+
+
+def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
+    """What to say of a panel whose outline leaves the drawing's though its corners and its surface do not."""
+    beyond = float(measures.hausdorff[index])
+    if beyond - measures.max_deviation[index] - measures.drift[index] <= WORTH_A_NOTE * measures.lengths[index]:
+        return ()
+    return (
+        f"Between its corners its outline is up to {beyond:.0f} mm away from the drawing's, as its free edges are "
+        "straight and its ends lie in planes.",
+    )
+
+
+def seam_records(reference: Reference, measures: Measures) -> tuple[SeamModel, ...]:
+    """Every seam; the panel that comes first in the file is named first, as its walk orders the corners."""
+    return tuple(_seam(reference, seam, measures, index) for index, seam in enumerate(reference.seams))
+
+
+def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
+    """The two panels of every seam, the one that comes first in the file first."""
+    return tuple(_names(reference, seam) for seam in reference.seams)
+
+
+def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
+    first, second = sorted(seam.panels)
+    return reference.panels[first].name, reference.panels[second].name
+
+
+def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> SeamModel:
+    order = np.argsort(seam.panels, kind="stable")
+    first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
+    gaps = measures.corner_gaps[index]
+    return SeamModel(
+        panels=_names(reference, seam),
+        edges=(first, second),
+        reversed=seam.reversed,
+        corner_gaps=tuple(gaps.tolist()),
+        max_corner_gap=float(gaps.max()),
+        max_seam_gap=float(measures.seam_gap[index]),
+        max_kink=float(np.degrees(measures.kink[index])),
+    )
+
+
+def _edge(panel: PanelReference, edge: int) -> str:
+    """The edge as features call it: ends and sides of four-sided panels, numbers of others."""
+    return FOUR_EDGES[edge] if panel.four_sided else f"edge {edge}"

@@ -1,0 +1,67 @@
+"""A panel's patches as a shop reads them: planes, cones by apex and axis, cylinders. Millimetres and degrees."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cadpanel.delivery.records.jsonfile import Vector
+from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
+from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+
+
+def patch_models(shape: AnyShape) -> tuple[PatchModel, ...]:
+    """The patches of a panel as it is built (see `straighten`), in the order of the walk."""
+    corners = shape.corners()
+    if isinstance(shape, PolygonShape):
+        return (PlanePatchModel(normal=vector(shape.normal), point=vector(corners[0, 0])),)
+    models: list[PatchModel] = []
+    for index, patch in enumerate(shape.patches):
+        if isinstance(patch, ConePatch):
+            models.append(_round_model(shape, index, patch))
+        else:
+            models.append(PlanePatchModel(normal=vector(shape.normals[index]), point=vector(corners[0, index])))
+    return tuple(models)
+
+
+def vector(xyz: Array) -> Vector:
+    """(3,) as a record holds it."""
+    x, y, z = xyz.tolist()
+    return x, y, z
+
+
+def _round_model(shape: PanelShape, index: int, patch: ConePatch) -> ConePatchModel | CylinderPatchModel:
+    frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    smallest, largest = _radii(shape, frame)
+    if patch.half_angle == 0.0:
+        return CylinderPatchModel(
+            axis=vector(frame.axis),
+            axis_point=vector(frame.center),
+            radius_min=smallest,
+            radius_max=largest,
+            sweep=math.degrees(patch.sweep),
+        )
+    # The radius grows along the axis where radius and half angle have the same sign; the apex lies the other way.
+    away = math.copysign(1.0, patch.radius * patch.half_angle)
+    to_apex = frame.level_radius / math.tan(frame.half_angle)
+    return ConePatchModel(
+        apex=vector(frame.center - to_apex * frame.axis),
+        axis=vector(away * frame.axis),
+        half_angle=math.degrees(abs(patch.half_angle)),
+        radius_min=smallest,
+        radius_max=largest,
+        sweep=away * math.degrees(patch.sweep),
+    )
+
+
+def _radii(shape: PanelShape, frame: AxisFrame) -> tuple[float, float]:
+    """Smallest and largest distance of the trimmed patch from its axis; both lie on the sections at its ends."""
+    radii = np.abs(
+        [
+            radius_range(cut_cone(frame, point, normal), frame.sweep)
+            for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
+        ]
+    )
+    return float(radii.min()), float(radii.max())

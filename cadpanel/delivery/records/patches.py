@@ -1,0 +1,60 @@
+"""The records of a panel's patches: planes, cones by apex and axis, cylinders. Millimetres and degrees."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from cadpanel.delivery.records.jsonfile import NonNegative, Record, Vector
+
+
+class PlanePatchModel(Record):
+    """A flat patch: its outward unit normal and a point on it, mm."""
+
+    kind: Literal["plane"] = "plane"
+    normal: Vector
+    point: Vector
+
+
+class ConePatchModel(Record):
+    """A conical patch.
+
+    Attributes:
+        apex: mm.
+        axis: unit vector, from the apex towards the patch.
+        half_angle: degrees.
+        radius_min: smallest distance of the trimmed patch from its axis, mm.
+        radius_max: largest distance, mm.
+        sweep: angle by which the walk across the panel turns about the axis, right-handed, degrees.
+    """
+
+    kind: Literal["cone"] = "cone"
+    apex: Vector
+    axis: Vector
+    half_angle: Annotated[float, Field(gt=0.0, lt=90.0)]
+    radius_min: NonNegative
+    radius_max: NonNegative
+    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
+
+
+class CylinderPatchModel(Record):
+    """A cylindrical patch.
+
+    Attributes:
+        axis: unit vector.
+        axis_point: a point on the axis, mm.
+        radius_min: the radius, mm.
+        radius_max: the radius again, so that readers need not tell cones from cylinders.
+        sweep: angle by which the walk across the panel turns about the axis, right-handed, degrees.
+    """
+
+    kind: Literal["cylinder"] = "cylinder"
+    axis: Vector
+    axis_point: Vector
+    radius_min: NonNegative
+    radius_max: NonNegative
+    sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
+
+
+PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]

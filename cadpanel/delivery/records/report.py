@@ -1,0 +1,310 @@
+"""report.json: the numbers of one delivery, as records that refuse what does not belong in them.
+
+Millimetres, square and cubic millimetres, and degrees throughout; the one exception, `max_tangency_error`, is in
+radians and says so.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from cadpanel.delivery.records.jsonfile import NonNegative, Record, Vector, read_json, write_json
+from cadpanel.delivery.records.patches import PatchModel
+
+Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
+Setting = str | int | float | tuple[str | int | float, ...]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegativeCount = Annotated[int, Field(ge=0)]
+
+
+class UnitsModel(Record):
+    """The units of every length and angle in the file."""
+
+    length: Literal["mm"] = "mm"
+    angle: Literal["deg"] = "deg"
+
+
+class ReferenceModel(Record):
+    """What was approximated.
+
+    Attributes:
+        file: name of the file.
+        panels, seams: how many there are.
+        notes: what was mended, moved, guessed or left out when it was read, one sentence each.
+        reading: how it was read and cut, by the options that were not left at their defaults.
+    """
+
+    file: str
+    panels: NonNegativeCount
+    seams: NonNegativeCount
+    notes: tuple[str, ...] = ()
+    reading: dict[str, Setting] = Field(default_factory=dict)
+
+
+class WeightsModel(Record):
+    """Weights of the paper's objective, where they were asked for instead of a tolerance."""
+
+    gap: NonNegative
+    deviation: NonNegative
+    drift: NonNegative
+
+
+class SettingsModel(Record):
+    """Everything that is needed to run the fit again; more settings may be added as further keys.
+
+    Attributes:
+        cadpanel_version: of the program that wrote the delivery.
+        feature: name of the shape feature, "auto" where each panel has the cheapest that will do.
+        composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
+        max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
+        tilt: "free" where cut planes may tilt, "fixed" where they stand upright.
+        method: name of the method.
+        gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
+        drift_along: how far a corner might move along its free edge, a share of the panel's length.
+        drift_across: the same across its free edge.
+        min_radius: tightest radius that was allowed anywhere, mm.
+        blend: which stretches were to become curved patches, where the user said so.
+        weights: the weights, or None where a tolerance was held.
+        restarts: further starts.
+        seed: of the random numbers.
+        seam_tolerance: how far the ends of two panels that meet might lie apart in the reference, mm.
+        thickness: of the sheet, mm.
+        skin_side: "outer" where the skin is the sheet's outer face.
+        step_schema: of the STEP files.
+    """
+
+    cadpanel_version: str
+    feature: str
+    composition: tuple[str, ...] | None = None
+    max_deviation: Annotated[float, Field(gt=0.0)] | None = None
+    tilt: Literal["free", "fixed"]
+    method: str
+    gap_tolerance: Annotated[float, Field(gt=0.0)] | None
+    drift_along: NonNegative
+    drift_across: NonNegative
+    min_radius: NonNegative = 0.0
+    blend: tuple[str, ...] = ()
+    weights: WeightsModel | None
+    restarts: NonNegativeCount
+    seed: int
+    seam_tolerance: NonNegative
+    thickness: NonNegative
+    skin_side: Literal["outer", "inner"]
+    step_schema: Literal["AP242", "AP214"]
+
+
+class SolveModel(Record):
+    """How the result was reached.
+
+    Attributes:
+        iterations: linear systems solved.
+        starts: how many starts were made.
+        agreed: how many of them ended within 1 % of the best.
+    """
+
+    iterations: NonNegativeCount
+    starts: NonNegativeCount
+    agreed: NonNegativeCount
+
+
+class PanelModel(Record):
+    """One panel as it was fitted and built.
+
+    Attributes:
+        name: the panel's stable name.
+        feature: name of its shape feature.
+        rms_deviation: root mean square distance of the reference's samples to their patches, mm.
+        max_deviation: largest distance of the reference, its outline included, to the patches, mm.
+        hausdorff: two-sided distance between the trimmed skin and the reference, mm.
+        max_corner_drift: largest distance of a corner from its reference corner, mm.
+        max_drift_along: the same, counted along the strip only, mm.
+        max_free_edge_drift: the same, counted across the free edges only, mm.
+        area: of the skin, mm^2.
+        volume: of the solid, from the formula, mm^3.
+        corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
+            of a chain, one row round a polygon.
+        patches: in the order of the walk across the panel, as they are built.
+        taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
+            along the reference's end 0 and end 1; empty for polygons.
+        moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
+        notes: what the fabricator should know, one sentence each; also of a bend that is not where it was told to be.
+    """
+
+    name: str
+    feature: str
+    rms_deviation: NonNegative
+    max_deviation: NonNegative
+    hausdorff: NonNegative
+    max_corner_drift: NonNegative
+    max_drift_along: NonNegative
+    max_free_edge_drift: NonNegative
+    area: Positive
+    volume: Positive
+    corners: tuple[tuple[Vector, ...], ...]
+    patches: tuple[PatchModel, ...]
+    taken: tuple[tuple[NonNegative, ...], ...] = ()
+    moved: NonNegative = 0.0
+    notes: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _check_that_corners_enclose_patches(self) -> PanelModel:
+        rows = [len(row) for row in self.corners]
+        chain = rows == 2 * [len(self.patches) + 1] and len(self.patches) >= 1
+        polygon = len(rows) == 1 and rows[0] >= 3 and len(self.patches) == 1
+        if not (chain or polygon):
+            raise ValueError(f"corners in rows of {rows} do not fit {len(self.patches)} patches")
+        return self
+
+
+class SeamModel(Record):
+    """Two panels that meet edge to edge, and how well they do.
+
+    Attributes:
+        panels: the two names.
+        edges: which edge of each panel lies on the seam: "end 0", "end 1", "side 0", "side 1"; of a polygon "edge 0"
+            and so on.
+        reversed: whether the first corner of one edge meets the last corner of the other.
+        corner_gaps: distance between corresponding corners, in the order of the first panel's edge, mm; only the two
+            outermost correspond where the edges are of different kinds.
+        max_corner_gap: the largest of them, mm.
+        max_seam_gap: symmetric Hausdorff distance between the two edges, mm.
+        max_kink: largest angle between the two skins' normals across the seam, degrees.
+    """
+
+    panels: tuple[str, str]
+    edges: tuple[Edge, Edge]
+    reversed: bool
+    corner_gaps: tuple[NonNegative, ...]
+    max_corner_gap: NonNegative
+    max_seam_gap: NonNegative
+    max_kink: NonNegative
+
+
+class SummaryModel(Record):
+    """The measures of a whole fit, mm and degrees; gaps and kink are 0 where there is no seam.
+
+    Attributes:
+        max_corner_gap: largest distance between two corresponding corners.
+        max_seam_gap: largest distance between two end curves, along the whole seam.
+        max_kink: largest angle between two neighbouring skins' normals.
+        rms_deviation: root mean square over all samples.
+        max_deviation: largest distance of the reference, its outline included, to the patches.
+        hausdorff: two-sided distance between the trimmed skin and the reference.
+        max_corner_drift: largest distance of a corner from its reference corner.
+        max_drift_along: the same, counted along the strip only.
+        max_free_edge_drift: the same, counted across the free edges only.
+        drift_along_percent, drift_across_percent: the last two as the largest share of a panel's own length, percent.
+        local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
+        tolerance_met: whether every gap is within the tolerance and every drift within its limit; always true where
+            weights ruled, which have no tolerance to miss.
+    """
+
+    max_corner_gap: NonNegative
+    max_seam_gap: NonNegative
+    max_kink: NonNegative
+    rms_deviation: NonNegative
+    max_deviation: NonNegative
+    hausdorff: NonNegative
+    max_corner_drift: NonNegative
+    max_drift_along: NonNegative
+    max_free_edge_drift: NonNegative
+    drift_along_percent: NonNegative
+    drift_across_percent: NonNegative
+    local_rms_multiple: NonNegative | None
+    tolerance_met: bool
+
+
+class BaselinesModel(Record):
+    """The same measures for the methods that ours is held against."""
+
+    local: SummaryModel
+    two_stage: SummaryModel
+
+
+class CertificateModel(Record):
+    """What reading panels.step and skins.step back showed.
+
+    Attributes:
+        solids: how many were found in panels.step.
+        skins: how many open shells were found in skins.step.
+        valid: whether all of them pass the kernel's exact check and are closed.
+        face_kinds: how many faces of each kind the panels' main faces are.
+        max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
+        volume_error: largest relative difference between a solid's volume and the formula's.
+        names_kept: whether every panel was found again under its name.
+        max_seam_gap: mm, measured on the faces that were read.
+        failures: what does not hold, one sentence each; empty where everything does.
+    """
+
+    solids: NonNegativeCount
+    skins: NonNegativeCount
+    valid: bool
+    face_kinds: dict[str, NonNegativeCount]
+    max_tangency_error: NonNegative
+    volume_error: NonNegative
+    names_kept: bool
+    max_seam_gap: NonNegative
+    failures: tuple[str, ...] = ()
+
+
+class TimingModel(Record):
+    """Wall-clock seconds of each step; `read` is 0 where the reference was read before, in another program."""
+
+    read: NonNegative
+    fit: NonNegative
+    build: NonNegative
+    write: NonNegative
+    verify: NonNegative
+
+
+class ReportModel(Record):
+    """report.json as a whole; its parts must agree with one another."""
+
+    schema_name: Literal["cadpanel.report/1"] = Field(default="cadpanel.report/1", alias="schema")
+    units: UnitsModel = UnitsModel()
+    reference: ReferenceModel
+    settings: SettingsModel
+    solve: SolveModel
+    panels: tuple[PanelModel, ...]
+    seams: tuple[SeamModel, ...]
+    features: dict[str, NonNegativeCount] = Field(default_factory=dict)
+    summary: SummaryModel
+    baselines: BaselinesModel
+    certificate: CertificateModel
+    timing: TimingModel
+
+    @model_validator(mode="after")
+    def _check_that_parts_agree(self) -> ReportModel:
+        names = {panel.name for panel in self.panels}
+        if len(names) != len(self.panels):
+            raise ValueError("two panels have the same name")
+        if len(self.panels) != self.reference.panels:
+            raise ValueError(f"the reference counts {self.reference.panels} panels, the list {len(self.panels)}")
+        if len(self.seams) != self.reference.seams:
+            raise ValueError(f"the reference counts {self.reference.seams} seams, the list {len(self.seams)}")
+        for seam in self.seams:
+            for name in seam.panels:
+                if name not in names:
+                    raise ValueError(f"a seam names the panel '{name}', which is not in the list")
+        return self
+
+
+def read_report(path: Path) -> ReportModel:
+    """The report in a file.
+
+    Raises:
+        DeliveryError: it cannot be read or is not a report; one sentence says where.
+    """
+    return read_json(path, ReportModel, schema="cadpanel.report/1", what="a cadpanel report")
+
+
+def write_report(report: ReportModel, path: Path) -> None:
+    """Write the report; the same report gives the same bytes.
+
+    Raises:
+        DeliveryError: it cannot be written.
+    """
+    write_json(report, path)

@@ -1,0 +1,43 @@
+"""What the sheets are made of and how they are written: the settings of a delivery, checked when they are made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from cadpanel.errors import SettingsError
+from cadpanel.fitting.settings import require
+from cadpanel.geometry.chain_checks import SkinSide
+from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET
+
+Schema = Literal["AP242", "AP214"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SheetSettings:
+    """How panels are built and written.
+
+    Attributes:
+        thickness: of the sheet, mm.
+        skin_side: "outer": the skin is the outer face and the sheet lies inside; "inner": the other way round.
+        schema: of the STEP files, "AP242" or "AP214".
+    """
+
+    thickness: float = 3.0
+    skin_side: SkinSide = "outer"
+    schema: Schema = "AP242"
+
+    def __post_init__(self) -> None:
+        """Check every setting.
+
+        Raises:
+            SettingsError: a setting is out of range; the message says which and what it may be.
+        """
+        require("sheet thickness", self.thickness, least=THINNEST_SHEET, most=THICKEST_SHEET, unit=" mm")
+        _require_one_of("skin side", self.skin_side, get_args(SkinSide))
+        _require_one_of("STEP schema", self.schema, get_args(Schema))
+
+
+def _require_one_of(what: str, value: str, choices: tuple[str, ...]) -> None:
+    if value not in choices:
+        raise SettingsError(f"the {what} must be {' or '.join(choices)}, not '{value}'")

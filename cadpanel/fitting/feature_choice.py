@@ -1,0 +1,142 @@
+"""The cheapest feature that will do: for each panel the first of a list that stays within a largest deviation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.errors import PanelError
+from cadpanel.features.catalogue import POLYGON, PanelFeature, for_corners
+from cadpanel.fitting.measures.fit import largest_deviations
+from cadpanel.fitting.methods.concurrent import fit_alone
+from cadpanel.fitting.problem import pose
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.geometry.chain_checks import check_skin
+from cadpanel.geometry.shape import AnyShape
+from cadpanel.reference.model import PanelReference, Reference
+from cadpanel.reference.suitability import check_fold
+
+Array = NDArray[np.float64]
+
+CHEAPEST_FIRST = (
+    POLYGON,
+    "cylinder",
+    "cone",
+    "plane-cylinder-plane",
+    "plane-cone-plane",
+    "tri-cone",
+    "plane-cone-cone-plane",
+    "plane-cone-plane-cone-plane",
+)
+"""What a shop makes with less work comes first: flat sheet, one roll, one tapered roll, folds, double folds."""
+
+
+class Choice:
+    """Which feature each panel has, and what it might have instead.
+
+    Attributes:
+        deviations: (panels, features) largest deviation of each panel fitted alone, mm; infinite where the feature does
+            not suit the panel.
+        chosen: (panels,) index into CHEAPEST_FIRST.
+    """
+
+    def __init__(self, reference: Reference, settings: FitSettings) -> None:
+        """Fit every panel alone with one feature after the other, until it stays within the largest deviation."""
+        if settings.max_deviation is None:
+            raise ValueError("without a largest deviation every feature would do")
+        self._reference, self._settings, self._largest = reference, settings, settings.max_deviation
+        panels = len(reference.panels)
+        self.deviations = np.full((panels, len(CHEAPEST_FIRST)), np.inf)
+        self._tried = np.zeros(self.deviations.shape, dtype=bool)
+        self.chosen = np.zeros(panels, dtype=np.intp)
+        waiting = np.arange(panels)
+        for place in range(len(CHEAPEST_FIRST)):
+            waiting = waiting[self.deviations[waiting].min(axis=1) > self._largest]
+            self._try(place, waiting)
+        self.chosen = self._first_within(self.deviations)
+
+    def features(self) -> list[PanelFeature]:
+        """The chosen feature of every panel."""
+        return [
+            self._feature(place, panel)
+            for place, panel in zip(self.chosen.tolist(), self._reference.panels, strict=True)
+        ]
+
+    def promote(self, panels: NDArray[np.intp]) -> bool:
+        """Give panels that break a limit the next feature that suits them.
+
+        Returns:
+            whether any panel has another feature now.
+        """
+        changed = False
+        for panel in panels.tolist():
+            for place in range(self.chosen[panel] + 1, len(CHEAPEST_FIRST)):
+                if not self._tried[panel, place]:
+                    self._try(place, np.array([panel]))
+                # A feature that is no closer alone will be no closer among its neighbours.
+                if self.deviations[panel, place] < self.deviations[panel, self.chosen[panel]]:
+                    self.chosen[panel] = place
+                    changed = True
+                    break
+        return changed
+
+    def forbid(self, panels: NDArray[np.intp]) -> bool:
+        """Take panels' features away, as nothing could be built of them among their neighbours, and choose others.
+
+        Returns:
+            whether each of them has another one.
+        """
+        self.deviations[panels, self.chosen[panels]] = np.inf
+        for panel in panels.tolist():
+            for place in np.flatnonzero(~self._tried[panel]).tolist():
+                if self.deviations[panel].min() > self._largest:
+                    self._try(place, np.array([panel]))
+        self.chosen[panels] = self._first_within(self.deviations[panels])
+        return bool(np.isfinite(self.deviations[panels, self.chosen[panels]]).all())
+
+    def _first_within(self, deviations: Array) -> NDArray[np.intp]:
+        within = deviations <= self._largest
+        first: NDArray[np.intp] = np.where(within.any(axis=1), within.argmax(axis=1), deviations.argmin(axis=1))
+        return first
+
+    def _try(self, place: int, panels: NDArray[np.intp]) -> None:
+        self._tried[panels, place] = True
+        suited = [i for i in panels.tolist() if self._suits(self._reference.panels[i], place)]
+        if not suited:
+            return
+        try:
+            part = replace(self._reference, panels=tuple(self._reference.panels[i] for i in suited), seams=())
+            problem, starts = pose(part, [self._feature(place, panel) for panel in part.panels])
+        except PanelError as error:
+            # No start was found for one of them, which the next feature may suit better.
+            self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
+            return
+        found = fit_alone(problem, starts, self._settings)
+        self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
+
+    def _suits(self, panel: PanelReference, place: int) -> bool:
+        if CHEAPEST_FIRST[place] == POLYGON:
+            return True
+        if not panel.four_sided:
+            return False
+        feature = self._feature(place, panel)
+        folds = sum(feature.curved)
+        try:
+            check_fold(panel, self._reference.source, flanged=folds < len(feature.curved), folds=folds)
+        except PanelError:
+            return False
+        return True
+
+    def _feature(self, place: int, panel: PanelReference) -> PanelFeature:
+        return for_corners(CHEAPEST_FIRST[place], tilt=self._settings.tilt)(len(panel.edges))
+
+
+def can_be_built(shape: AnyShape) -> bool:
+    """Whether an exact skin can be built of a panel."""
+    try:
+        check_skin(shape)
+    except PanelError:
+        return False
+    return True

@@ -1,0 +1,1 @@
+"""The methods that fit panels, one a file."""

@@ -1,0 +1,1 @@
+"""Where every panel's fit begins, told by the reference alone."""

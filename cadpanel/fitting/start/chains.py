@@ -1,0 +1,327 @@
+"""Initial values from the reference alone: cut both ends into the chain's patches by their normals, roll cones between.
+
+All panels of one feature at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.errors import PanelError
+from cadpanel.features.catalogue import PanelFeature
+from cadpanel.features.feature import Feature
+from cadpanel.features.layout import Layout
+from cadpanel.features.walk import walk
+from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.frames import Frames, reframe
+from cadpanel.fitting.start.polygons import start_polygons
+from cadpanel.fitting.start.segmentation import curved_runs, cut_profile
+from cadpanel.geometry.frames import cross, dot
+from cadpanel.reference.model import PanelReference, Reference
+from cadpanel.reference.suitability import check_corners, check_fold
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+# A curved patch turns by at least this at the start, radians: where it turned by nothing its radius would be unknown.
+_LEAST_SWEEP = 1e-3
+# Places along an end at which its normals are looked at.
+_PLACES = 65
+# A fold below this angle (radians) cannot be told from a flat panel.
+_LEAST_FOLD = np.radians(2.0)
+# Half angles of the start stay below this, radians; the ends' widths tell them only roughly.
+_STEEPEST = 0.3
+# The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
+_ASTRAY = np.cos(np.radians(40.0))
+# An end that is nearly straight does not tell its plane's tilt: singular values below this share are left out.
+_LEAST_SINGULAR = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """Where the fit begins.
+
+    Attributes:
+        origins: (panels, 3) a point on the middle of each panel, mm.
+        axes: (panels, 3, 3) columns b, t, n: across the panel, along it, outwards.
+        unknowns: arrays (panels, size) in the layout's rows, lengths in units of `length`: the best start and, where a
+            feature has curved patches side by side, another one, as it is easy to cut them in the wrong place.
+        length: mm, the mean length of a panel.
+    """
+
+    origins: Array
+    axes: Array
+    unknowns: tuple[Array, ...]
+    length: float
+
+
+def start(
+    reference: Reference, layout: Layout, samples: SampleArrays, length: float, stretches: Array | None = None
+) -> Start:
+    """First values for all panels.
+
+    Args:
+        reference: what is to be approximated.
+        layout: the panels' features, in units of `length`.
+        samples: those of the reference.
+        length: mm.
+        stretches: (panels, 2, 2) where on both ends the curved patches are to begin and end, mm from side 0; nan, or
+            None, where the normals are to tell.
+
+    Raises:
+        PanelError: a panel has no fold, or not the four corners, that its feature asks for.
+    """
+    origins, axes = np.zeros((layout.panels, 3)), np.zeros((layout.panels, 3, 3))
+    held = np.full((layout.panels, 2, 2), np.nan) if stretches is None else stretches
+    starts = [np.zeros((layout.panels, layout.size))]
+    if any(_ambiguous(group.feature) for group in layout.groups):
+        starts.append(starts[0].copy())
+    for group in layout.groups:
+        panels = [reference.panels[i] for i in group.panels]
+        if isinstance(group.feature, Feature):
+            _check(panels, reference.source, group.feature)
+            found = _start_chains(
+                panels, group.feature, samples.take(group.panels), length, held[group.panels], ways=len(starts)
+            )
+        else:
+            found = start_polygons(panels, samples.take(group.panels), length)
+        origins[group.panels], axes[group.panels] = found.origins, found.axes
+        for way, unknowns in enumerate(starts):
+            values = found.values[min(way, len(found.values) - 1)]
+            unknowns[group.panels, : len(group.feature.free)] = values[:, group.feature.free]
+    return Start(origins, axes, tuple(starts), length)
+
+
+def _ambiguous(feature: PanelFeature) -> bool:
+    """Whether curved patches follow each other."""
+    return any(stop - start_ > 1 for start_, stop in curved_runs(feature.curved))
+
+
+def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
+    folds = sum(feature.curved)
+    for panel in panels:
+        check_corners(panel, source, feature.name)
+        if folds:
+            check_fold(panel, source, flanged=folds < len(feature.patches), folds=folds)
+
+
+@dataclass(slots=True)
+class _Ends:
+    """Both ends of n panels of k patches: where patches begin and end, and by how much the normals turn on them.
+
+    Attributes:
+        points, normals: (n, 2, k + 1, 3) at the knots.
+        middle, outward: (n, 2, 3) points and normals in the middle of the anchor patch.
+        widths: (n, 2, k) mm along the end.
+        sweeps: (n, k) radians.
+    """
+
+    points: Array
+    normals: Array
+    middle: Array
+    outward: Array
+    widths: Array
+    sweeps: Array
+
+
+def _start_chains(
+    panels: Sequence[PanelReference],
+    feature: Feature,
+    samples: SampleArrays,
+    length: float,
+    stretches: Array,
+    *,
+    ways: int,
+) -> Frames:
+    """Frames and all numbers of the chains; `ways` is 2 where curved patches may be cut in another way, too."""
+    axis = _axes(panels, samples)
+    whole = np.array([panel.corners for panel in panels])
+    found: Frames | None = None
+    for way in range(ways if _ambiguous(feature) else 1):
+        origins, axes, values = _roll(
+            _cut_ends(panels, feature, axis, stretches, even=way > 0), panels, feature, length
+        )
+        if found is None:
+            found = Frames(origins, axes, [])
+        else:
+            reframe(feature, values, (origins - found.origins) / length, axes, found.axes)
+        values = _held(feature, values)
+        corners = np.einsum("pesx,pxa->pesa", whole - found.origins[:, None, None], found.axes)
+        _lay_flanges(corners / length, feature, values)
+        values = _held(feature, values)
+        _lay_cuts(panels, feature, found, length, values)
+        found.values.append(_held(feature, values))
+    assert found is not None
+    return found
+
+
+def _roll(ends: _Ends, panels: Sequence[PanelReference], feature: Feature, length: float) -> tuple[Array, Array, Array]:
+    """Frames in the middle of the anchor patches, and the numbers of all patches."""
+    _refuse_without_fold(panels, feature, ends.sweeps)
+    t = _unit(ends.middle[:, 1] - ends.middle[:, 0])
+    n = _unit(_off(ends.outward.sum(axis=1), t))
+    axes = np.stack([cross(t, n), t, n], axis=-1)
+    origins = ends.middle.mean(axis=1)
+    distance = np.linalg.norm(ends.points[:, 1] - ends.points[:, 0], axis=-1)
+    values = np.zeros((len(panels), len(feature.numbers)))
+    for i, curved in enumerate(feature.curved):
+        at = feature.patch_slice(i).start
+        widening = (ends.widths[:, 1, i] - ends.widths[:, 0, i]) / (0.5 * (distance[:, i] + distance[:, i + 1]))
+        width = ends.widths[:, :, i].mean(axis=1)
+        if curved:
+            sweep = ends.sweeps[:, i]
+            values[:, at] = width / sweep / length
+            values[:, at + 1] = np.clip(np.arctan(widening / sweep), -_STEEPEST, _STEEPEST)
+            values[:, at + 2] = sweep
+        else:
+            values[:, at] = width / length
+            values[:, at + 1] = -np.arctan(widening)
+    return origins, axes, values
+
+
+def _held(feature: Feature, values: Array) -> Array:
+    """The values with fixed and tied numbers in their places, and the others within their bounds."""
+    unknowns = np.clip(values[:, feature.free], *feature.bounds())
+    return feature.expand(unknowns)
+
+
+def _axes(panels: Sequence[PanelReference], samples: SampleArrays) -> Array:
+    """(n, 3) the direction about which the normals turn: that in which they spread least.
+
+    On a cone and on the planes tangent to it all normals enclose one angle with the axis, so that it is exact there.
+    """
+    corners = np.array([panel.corners for panel in panels])
+    chord = _unit((corners[:, 1] - corners[:, 0]).mean(axis=1))
+    weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
+    off = samples.normals - np.einsum("pm,pmx->px", weights, samples.normals)[:, None]
+    _, directions = np.linalg.eigh(np.einsum("pm,pmx,pmy->pxy", weights, off, off))
+    least = directions[:, :, 0]
+    least = least * np.where(dot(least, chord) < 0.0, -1.0, 1.0)[:, None]
+    astray = dot(least, chord) < _ASTRAY
+    return np.where(astray[:, None], chord, least)
+
+
+def _cut_ends(
+    panels: Sequence[PanelReference], feature: Feature, axis: Array, stretches: Array, *, even: bool
+) -> _Ends:
+    lines, normals = _evenly(panels)
+    count, _, places, _ = lines.shape
+    n = _unit(_off(normals.sum(axis=(1, 2)), axis))
+    b = cross(axis, n)
+    turned = np.arctan2(np.einsum("peqx,px->peq", normals, b), np.einsum("peqx,px->peq", normals, n))
+    turned = np.unwrap(turned, axis=2)
+    lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
+    held = stretches / lengths[..., None] * (places - 1)
+    profile = cut_profile(turned.reshape(2 * count, places), feature.curved, even=even, held=held.reshape(-1, 2))
+    knots = profile.knots.reshape(count, 2, -1)
+    sweeps = np.diff(profile.angles.reshape(count, 2, -1).mean(axis=1), axis=1)
+    sweeps = np.where(np.abs(sweeps) < _LEAST_SWEEP, np.where(sweeps < 0.0, -1.0, 1.0) * _LEAST_SWEEP, sweeps)
+    middle = (0.5 * (knots[:, :, feature.anchor] + knots[:, :, feature.anchor + 1])).astype(np.float64)
+    return _Ends(
+        points=_at(lines, knots.astype(np.float64)),
+        normals=_at(normals, knots.astype(np.float64)),
+        middle=_at(lines, middle[..., None])[:, :, 0],
+        outward=_at(normals, middle[..., None])[:, :, 0],
+        widths=np.diff(knots, axis=2) * (lengths / (places - 1))[..., None],
+        sweeps=sweeps,
+    )
+
+
+def _evenly(panels: Sequence[PanelReference]) -> tuple[Array, Array]:
+    """Points and normals (n, 2, _PLACES, 3) at even distances along both ends."""
+    lines, normals = np.empty((len(panels), 2, _PLACES, 3)), np.empty((len(panels), 2, _PLACES, 3))
+    for i, panel in enumerate(panels):
+        for end in (0, 1):
+            line = panel.edges[end]
+            reach = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+            places = np.interp(np.linspace(0.0, reach[-1], _PLACES), reach, np.arange(len(line), dtype=np.float64))
+            low = np.minimum(places.astype(np.intp), len(line) - 2)
+            share = (places - low)[:, None]
+            for target, source in ((lines, line), (normals, panel.edge_normals[end])):
+                target[i, end] = (1.0 - share) * source[low] + share * source[low + 1]
+    return lines, _unit(normals)
+
+
+def _at(lines: Array, places: Array) -> Array:
+    """(n, 2, r, d) values of lines (n, 2, q, d) at places (n, 2, r) between 0 and q - 1."""
+    low = np.clip(np.floor(places).astype(np.intp), 0, lines.shape[2] - 2)
+    share = (places - low)[..., None]
+    before = np.take_along_axis(lines, low[..., None], axis=2)
+    after = np.take_along_axis(lines, low[..., None] + 1, axis=2)
+    return np.asarray((1.0 - share) * before + share * after)
+
+
+def _lay_flanges(corners: Array, feature: Feature, values: Array) -> None:
+    """Give outer flanges the width and the turn that bring their free edges through the corners (n, 2, 2, 3)."""
+    edges = walk(feature, values, derivatives=False).edges
+    last = len(feature.patches) - 1
+    for side, (patch, ruling) in enumerate(((0, 1), (last, last))):
+        if feature.curved[patch] or patch == feature.anchor:
+            continue
+        p, b, t = (getattr(edges, axis)[:, ruling, None] for axis in "pbt")
+        out = corners[:, :, side] - p
+        x, y = dot(out, b), dot(out, t)
+        slope = (x[:, 1] - x[:, 0]) / (y[:, 1] - y[:, 0])
+        way = 1.0 if side == 1 else -1.0
+        where = feature.patch_slice(patch).start
+        values[:, where] = way * (x[:, 0] - slope * y[:, 0])
+        values[:, where + 1] = -way * np.arctan(slope)
+
+
+def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames, length: float, values: Array) -> None:
+    """Lay each cut plane through the outline's end."""
+    for end in (0, 1):
+        where = feature.cut_slice(end).start
+        tilt = feature.numbers[where + 2].fixed is None
+        for i, panel in enumerate(panels):
+            local = (panel.ends[end] - frames.origins[i]) @ frames.axes[i] / length
+            position, normal = end_plane(local, tilt=tilt)
+            values[i, where : where + 3] = position, normal[0], normal[2]
+    if feature.tied:
+        for number, source in feature.tied:
+            values[:, source] = 0.5 * (values[:, source] + values[:, number])
+    if feature.tied or feature.cuts == "square":
+        corners = np.array([panel.corners for panel in panels]).mean(axis=2)
+        local = np.einsum("pex,pxa->pea", corners - frames.origins[:, None], frames.axes) / length
+        for end in (0, 1):
+            where = feature.cut_slice(end).start
+            skew, tilt_ = (values[:, feature.cut_slice(0).start + k] if feature.tied else 0.0 for k in (1, 2))
+            values[:, where] = local[:, end, 1] + skew * local[:, end, 0] + tilt_ * local[:, end, 2]
+
+
+def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:
+    """The plane m . x = position through an end by least squares, m = (skew, 1, tilt), tilt 0 unless it is wanted.
+
+    `line` (q, 3) runs along the end, in the axes b, t, n of a panel.
+    """
+    columns = [0, 2] if tilt else [0]
+    matrix = np.column_stack([np.ones(len(line)), -line[:, columns]])
+    solution = np.linalg.lstsq(matrix, line[:, 1], rcond=_LEAST_SINGULAR)[0]
+    return float(solution[0]), np.array([solution[1], 1.0, solution[2] if tilt else 0.0])
+
+
+def _refuse_without_fold(panels: Sequence[PanelReference], feature: Feature, sweeps: Array) -> None:
+    """Refuse a panel whose curved patches, between flanges, turn by nothing that could be rolled."""
+    if not any(feature.curved) or all(feature.curved):
+        return
+    folds = np.abs(np.where(feature.curved, sweeps, 0.0)).sum(axis=1)
+    for panel, fold in zip(panels, folds, strict=True):
+        if fold < _LEAST_FOLD:
+            raise PanelError(
+                panel.name,
+                f"its faces turn by only {np.degrees(fold):.2f} degrees across the panel, which is no fold to roll; "
+                "take it out of the file or give it a flat feature",
+            )
+
+
+def _off(vectors: Array, direction: Array) -> Array:
+    return vectors - dot(vectors, direction)[..., None] * direction
+
+
+def _unit(vectors: Array) -> Array:
+    unit: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return unit

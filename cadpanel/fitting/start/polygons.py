@@ -1,0 +1,34 @@
+"""Initial values of planar polygons: the plane through the samples, and the outline's corners in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.frames import Frames
+from cadpanel.geometry.frames import cross
+from cadpanel.reference.model import PanelReference
+
+Array = NDArray[np.float64]
+
+
+def start_polygons(panels: Sequence[PanelReference], samples: SampleArrays, length: float) -> Frames:
+    """Frames and numbers (n, 3 + 2 corners) of panels with equally many corners."""
+    weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
+    origins = np.einsum("pm,pmx->px", weights, samples.points)
+    off = samples.points - origins[:, None]
+    _, directions = np.linalg.eigh(np.einsum("pm,pmx,pmy->pxy", weights, off, off))
+    n = directions[:, :, 0]
+    outward = np.einsum("pm,pmx->px", weights, samples.normals)
+    n = n * np.where(np.einsum("px,px->p", n, outward) < 0.0, -1.0, 1.0)[:, None]
+    corners = np.array([panel.corners for panel in panels])
+    first = corners[:, 1] - corners[:, 0]
+    b = first - np.einsum("px,px->p", first, n)[:, None] * n
+    b = b / np.linalg.norm(b, axis=1, keepdims=True)
+    axes = np.stack([b, cross(n, b), n], axis=-1)
+    local = np.einsum("pcx,pxa->pca", corners - origins[:, None], axes) / length
+    numbers = np.concatenate([np.zeros((len(panels), 3)), local[:, :, :2].reshape(len(panels), -1)], axis=1)
+    return Frames(origins, axes, [numbers])

@@ -1,0 +1,118 @@
+"""Gaps between the conic arcs of neighbours whose ends are alike, between their corners.
+
+A point on one panel's arc is held near the other panel's arc by its distances from the two surfaces whose intersection
+that arc is: the cone, and the plane that cuts it. Unlike the distance of corresponding points this leaves the points
+free to pass each other along the seam. Either panel's points are held to the other's arc: the order of the two must not
+matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.layout import Layout
+from cadpanel.geometry.frames import dot
+from cadpanel.solver.blocks import Normal
+from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.terms.corner_gap import Placement
+from cadpanel.terms.rows import Rows, add_rows, booked_cost
+from cadpanel.terms.seams import SeamBatch, arc_patches, arc_places
+from cadpanel.terms.state import State, slopes
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """The arc points of one panel of every seam, and what of the other panel they are held to.
+
+    Attributes:
+        own, other: (seams,) the panel that the points belong to, and the other one.
+        places: (seams, q) the points among the panel's arc points.
+        patch: (seams, q) the other panel's patches that they meet.
+        end: (seams,) the other panel's end.
+    """
+
+    own: IntArray
+    other: IntArray
+    places: IntArray
+    patch: IntArray
+    end: IntArray
+
+
+class ArcGap:
+    """Holds the conic arcs of neighbours within the tolerance of each other."""
+
+    def __init__(self, seams: SeamBatch, place: Placement, layout: Layout, *, tolerance: float) -> None:
+        """Hold the arcs of a batch of curved edges that are alike within `tolerance`, in the solver's length."""
+        self.seams, self.place = seams, place
+        self._sides = tuple(self._side(layout, side) for side in (0, 1))
+        points = sum(side.places.shape[1] for side in self._sides)
+        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, least=1e-9)
+
+    def _side(self, layout: Layout, side: int) -> _Side:
+        seams = self.seams
+        patch = np.tile(arc_patches(seams.curved[side]), (len(seams.panels), 1))
+        mirrored = len(seams.curved[side]) - 1 - patch
+        return _Side(
+            own=seams.panels[:, side],
+            other=seams.panels[:, 1 - side],
+            places=arc_places(layout, seams, side),
+            patch=np.where(seams.reversed[:, None], mirrored, patch),
+            end=seams.edges[:, 1 - side],
+        )
+
+    def vectors(self, state: State) -> Array:
+        """(seams, points, 2) distances from the other panel's cone and from its cut plane."""
+        return np.concatenate([self._distances(state, side)[0] for side in self._sides], axis=1)
+
+    def cost(self, state: State) -> Array:
+        """See `Term.cost`."""
+        residual = self.hold.roots()[..., None] * self.vectors(state)
+        return booked_cost(residual, tuple(self.seams.panels.T), len(self.place.origins))
+
+    def rows(self, state: State) -> list[Rows]:
+        """See `Term.rows`."""
+        groups = len(self.seams.panels)
+        first, second = (self._linearized(state, side) for side in self._sides)
+        roots = self.hold.roots()[..., None]
+        distances = np.concatenate([first[0], second[0]], axis=1)
+        to_first = np.concatenate([first[1], second[2]], axis=1)
+        to_second = np.concatenate([first[2], second[1]], axis=1)
+        jacobians = tuple(
+            (roots[..., None] * part).reshape(groups, distances[0].size, part.shape[-1])
+            for part in (to_first, to_second)
+        )
+        panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
+        return [Rows((roots * distances).reshape(groups, -1), panels, jacobians, self.seams.pair)]
+
+    def add_to(self, normal: Normal, state: State) -> Array:
+        """See `Term.add_to`."""
+        return add_rows(self.rows(state), normal, len(self.place.origins))
+
+    def _distances(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
+        """Distances (seams, q, 2), the points (seams, q, 3) in the other panels' frames, and the cones' inner rates."""
+        own = state.arcs.position[side.own[:, None], side.places]
+        points = self.place.carry(own, side.own, side.other)
+        from_cone, inner = state.surfaces.distance(points, side.other, side.patch)
+        m, s = state.cuts.m[side.other, side.end], state.cuts.s[side.other, side.end]
+        from_cut = dot(points, m[:, None]) - s[:, None]
+        return np.stack([from_cone, from_cut], axis=-1), points, inner
+
+    def _linearized(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
+        """Distances, and their derivatives (seams, q, 2, size) by the points' panels and by the other panels."""
+        distances, points, inner = self._distances(state, side)
+        outer, dm, ds = state.surfaces.outer, state.cuts.dm, state.cuts.ds
+        if outer is None or dm is None or ds is None:
+            raise ValueError("the state was walked without derivatives")
+        m = state.cuts.m[side.other, side.end]
+        # How the distances follow the point itself: the cone's normal, and the cut plane's.
+        gradients = np.stack([-inner[..., 3:6], np.broadcast_to(m[:, None], points.shape)], axis=2)
+        moved = self.place.turn(side.own, side.other)[:, None] @ slopes(state.arcs)[side.own[:, None], side.places]
+        by_cone = (inner[..., None, :] @ outer[side.other[:, None], side.patch])[..., 0, :]
+        by_cut = points @ dm[side.other, side.end] - ds[side.other, side.end][:, None]
+        return distances, gradients @ moved, np.stack([by_cone, by_cut], axis=2)

@@ -1,0 +1,132 @@
+"""Gaps between edges that are not alike: the curved end of one panel against a straight edge, or another chain's end.
+
+Only their outermost corners correspond. In between, points of either edge are held to the other: to a straight edge by
+their vector from its line; to an end by their distances from the skin and from the plane that cuts it, each point to
+the patch that its foot falls on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cadpanel.features.layout import Layout
+from cadpanel.geometry.frames import dot
+from cadpanel.solver.blocks import Normal
+from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.terms.corner_gap import Placement
+from cadpanel.terms.rows import Rows, add_rows, booked_cost
+from cadpanel.terms.seams import Movers, SeamBatch, movers
+from cadpanel.terms.state import State, slopes
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True)
+class _Held:
+    """Vectors that are held, and how they follow the unknowns of the panel that moves and of the other one.
+
+    Attributes:
+        vectors: (s, q, 3).
+        by_mover, by_other: (s, q, 3, size), None without derivatives.
+    """
+
+    vectors: Array
+    by_mover: Array | None
+    by_other: Array | None
+
+
+class MixedGap:
+    """Holds edges that are not alike within the tolerance of each other."""
+
+    def __init__(self, seams: SeamBatch, place: Placement, layout: Layout, *, tolerance: float) -> None:
+        """Hold the edges of a batch within `tolerance`, in units of the solver's length."""
+        self.seams, self.place = seams, place
+        self._movers: tuple[Movers, Movers] = (movers(layout, seams, 0), movers(layout, seams, 1))
+        points = sum(one.places.shape[1] for one in self._movers)
+        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, least=1e-9)
+
+    def vectors(self, state: State) -> Array:
+        """(seams, points, 3) from the other panel's edge."""
+        return np.concatenate([self._held(state, side, derivatives=False).vectors for side in (0, 1)], axis=1)
+
+    def cost(self, state: State) -> Array:
+        """See `Term.cost`."""
+        residual = self.hold.roots()[..., None] * self.vectors(state)
+        return booked_cost(residual, tuple(self.seams.panels.T), len(self.place.origins))
+
+    def rows(self, state: State) -> list[Rows]:
+        """See `Term.rows`."""
+        groups, roots = len(self.seams.panels), self.hold.roots()[..., None]
+        first, second = (self._held(state, side, derivatives=True) for side in (0, 1))
+        vectors = np.concatenate([first.vectors, second.vectors], axis=1)
+        jacobians = []
+        for parts in ((first.by_mover, second.by_other), (first.by_other, second.by_mover)):
+            whole = np.concatenate([part for part in parts if part is not None], axis=1)
+            jacobians.append((roots[..., None] * whole).reshape(groups, vectors[0].size, -1))
+        panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
+        return [Rows((roots * vectors).reshape(groups, -1), panels, tuple(jacobians), self.seams.pair)]
+
+    def add_to(self, normal: Normal, state: State) -> Array:
+        """See `Term.add_to`."""
+        return add_rows(self.rows(state), normal, len(self.place.origins))
+
+    def _held(self, state: State, side: int, *, derivatives: bool) -> _Held:
+        own, other = self.seams.panels[:, side], self.seams.panels[:, 1 - side]
+        moving = self._movers[side]
+        at = state.boundary.position[own[:, None, None], moving.places]
+        share = moving.share[:, None]
+        points = self.place.carry((1.0 - share) * at[:, :, 0] + share * at[:, :, 1], own, other)
+        moved = None
+        if derivatives:
+            rates = slopes(state.boundary)[own[:, None, None], moving.places]
+            rates = (1.0 - share[..., None]) * rates[:, :, 0] + share[..., None] * rates[:, :, 1]
+            moved = self.place.turn(own, other)[:, None] @ rates
+        if self.seams.straight(1 - side):
+            return self._from_line(state, side, points, moved)
+        return self._from_end(state, side, points, moved)
+
+    def _from_line(self, state: State, side: int, points: Array, moved: Array | None) -> _Held:
+        """From the line through two corners: r = x - c - s e with s = (x - c) . e / e . e and e between the corners."""
+        other = self.seams.panels[:, 1 - side, None]
+        corners = self.seams.corners[:, 1 - side][:, [0, -1]]
+        at = state.corners.position[other, corners]
+        e = (at[:, 1] - at[:, 0])[:, None]
+        square = dot(e, e)
+        s = (dot(points - at[:, :1], e) / square)[..., None]
+        r = points - at[:, :1] - s * e
+        if moved is None:
+            return _Held(r, None, None)
+        rates = slopes(state.corners)[other, corners]
+        de = (rates[:, 1] - rates[:, 0])[:, None]
+        # r stays square to e: what lies along e of its change makes up for the turning of e.
+        by_other = -(rates[:, :1] + s[..., None] * de)
+        away = (e[..., None, :] @ by_other)[..., 0, :]
+        turned = (r[..., None, :] @ de)[..., 0, :]
+        by_other -= e[..., None] * ((away + turned) / square[..., None])[..., None, :]
+        across = np.eye(3) - e[..., :, None] * e[..., None, :] / square[..., None, None]
+        return _Held(r, across @ moved, by_other)
+
+    def _from_end(self, state: State, side: int, points: Array, moved: Array | None) -> _Held:
+        """From the skin, and from the cut plane; the third number is 0."""
+        other, end = self.seams.panels[:, 1 - side], self.seams.edges[:, 1 - side]
+        surfaces, cuts = state.surfaces, state.cuts
+        patch = surfaces.assign(points, other)
+        from_skin, inner = surfaces.distance(points, other, patch)
+        m = cuts.m[other, end]
+        from_cut = dot(points, m[:, None]) - cuts.s[other, end][:, None]
+        vectors = np.stack([from_skin, from_cut, np.zeros_like(from_skin)], axis=-1)
+        if moved is None:
+            return _Held(vectors, None, None)
+        if surfaces.outer is None or cuts.dm is None or cuts.ds is None:
+            raise ValueError("the state was walked without derivatives")
+        gradients = np.zeros((*points.shape[:2], 3, 3))
+        gradients[:, :, 0] = -inner[..., 3:6]
+        gradients[:, :, 1] = m[:, None]
+        by_other = np.zeros((*points.shape[:2], 3, surfaces.outer.shape[-1]))
+        by_other[:, :, 0] = (inner[..., None, :] @ surfaces.outer[other[:, None], patch])[..., 0, :]
+        by_other[:, :, 1] = points @ cuts.dm[other, end] - cuts.ds[other, end][:, None]
+        return _Held(vectors, gradients @ moved, by_other)

@@ -16,7 +16,7 @@ from cadpanel.features.catalogue import Tilt
 from cadpanel.features.feature import Feature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
-from cadpanel.fitting.result import fit as fit_reference
+from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.records.comparison import ComparisonModel
     from cadpanel.delivery.records.report import ReportModel
-    from cadpanel.delivery.records.table1 import Progress as CompareProgress
     from cadpanel.delivery.settings import Schema
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
+    from cadpanel.studies.table1 import Progress as CompareProgress
 
 
 class FitKeywords(TypedDict, total=False):
@@ -168,10 +168,11 @@ def compare(
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
     """
-    from cadpanel.delivery.records.table1 import compare as compare_reference
-    from cadpanel.delivery.records.table1 import write_comparison_folder
+    from cadpanel.delivery.records.table1 import comparison_record, write_comparison_folder
+    from cadpanel.studies.table1 import compare as compare_reference
 
-    comparison = compare_reference(reference, _asked(settings, changes), progress=progress)
+    how = _asked(settings, changes)
+    comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))
     if out is not None:
         write_comparison_folder(comparison, Path(out), overwrite=overwrite)
     return comparison

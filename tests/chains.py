@@ -5,24 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from cadpanel.features.catalogue import CATALOGUE, PanelFeature, feature
+from cadpanel.arrays import Array
+from cadpanel.features.catalogue import CATALOGUE, feature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.features.polygon import Polygon
-from cadpanel.features.walk import Points
+from cadpanel.features.rulings import PanelFeature, Points
 from cadpanel.fitting.problem import Problem
-from cadpanel.geometry.frames import cayley, dot
-from cadpanel.terms.corner_gap import Placement
+from cadpanel.geometry.frames import cayley
+from cadpanel.geometry.vectors import dot
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.limits.corner_drift import Limited, Outline
+from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Chains that a user might compose; the package has no names for them.
 COMPOSED: dict[str, Feature] = {

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from cadpanel.fitting.result import FitResult, fit
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 from fixtures.arrays import reference

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
 from OCP.BRepLib import BRepLib
@@ -14,9 +13,8 @@ from OCP.Geom2d import Geom2d_Line
 from OCP.gp import gp_Dir2d, gp_Pnt2d
 from OCP.TopoDS import TopoDS_Face
 
+from cadpanel.arrays import Array
 from tests.reference_shapes import Lip, Surface, kernel_face, kernel_lip, write_products
-
-Array = NDArray[np.float64]
 
 SIDE = 1500.0  # mm, of a panel
 

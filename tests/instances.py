@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.catalogue import CATALOGUE, feature
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
-from cadpanel.features.walk import cut_planes
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
-
-Array = NDArray[np.float64]
 
 # Every feature that has a name; of the cone splines two.
 NAMES = [*CATALOGUE, "cone-spline-4", "cone-spline-6"]

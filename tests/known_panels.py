@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.end_curves import EndCurves
-from cadpanel.geometry.frames import cross
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.vectors import cross
 from cadpanel.reference.model import PanelReference, Reference, Seam
-
-Array = NDArray[np.float64]
 
 # Samples along a panel and across each of its patches; points of an outline's end over each patch.
 _ALONG, _ACROSS, _OUTLINE = 9, 7, 33

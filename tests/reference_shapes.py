@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.GeomAbs import GeomAbs_C2
@@ -25,10 +24,10 @@ from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
+from cadpanel.arrays import Array
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.reference.model import FaceSamples, RawPanel
 
-Array = NDArray[np.float64]
 Surface = Callable[[Array, Array], Array]
 
 EDGE_POINTS = 33

@@ -8,8 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape, Patch, PlanePatch
+from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch
 
 CHAINS = {
     "plane-cone-plane": "pcp",

@@ -36,6 +36,24 @@ def test_imports_go_downwards_only(capsys: pytest.CaptureFixture[str]) -> None:
     assert status == 0, capsys.readouterr().out
 
 
+def broken_contracts(folder: Path) -> set[str]:
+    """The names of the contracts that the package in a folder breaks."""
+    shutil.copy(ROOT / "pyproject.toml", folder)
+    answer = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports(no_cache=True))",
+        ],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert answer.returncode == 1, answer.stderr
+    return {line.partition(" BROKEN")[0] for line in answer.stdout.splitlines() if " BROKEN" in line}
+
+
 @pytest.mark.parametrize(
     ("layer", "wrong_import", "contract"),
     [
@@ -46,27 +64,45 @@ def test_imports_go_downwards_only(capsys: pytest.CaptureFixture[str]) -> None:
         ("features", "cadpanel.solver", "Only the terms and the fit call the solver"),
         ("delivery", "OCP.gp", "Only brep imports the CAD kernel"),
         ("fitting", "build123d", "Only brep imports the CAD kernel"),
+        ("fitting", "cadpanel.brep", "Imports go downwards only"),
+        ("studies", "cadpanel.delivery", "Imports go downwards only"),
+        ("brep/files", "cadpanel.brep.cutting", "Inside brep, too"),
+        ("brep/kernel", "cadpanel.brep.faces", "Inside brep, too"),
+        ("brep/isolation", "OCP.gp", "Only brep imports the CAD kernel"),
+        ("fitting/measures", "cadpanel.fitting.run", "Inside fitting, too"),
     ],
 )
 def test_a_wrong_import_is_caught(tmp_path: Path, layer: str, wrong_import: str, contract: str) -> None:
     shutil.copytree(PACKAGE, tmp_path / "cadpanel", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
     file = tmp_path / "cadpanel" / ("errors.py" if layer == "errors" else f"{layer}/__init__.py")
     file.write_text(f"{file.read_text(encoding='utf-8')}\nimport {wrong_import}\n", encoding="utf-8")
-    answer = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports(no_cache=True))",
-        ],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=120,
+    broken = broken_contracts(tmp_path)
+    assert any(name.startswith(contract) for name in broken), broken
+
+
+def test_a_circle_between_two_files_of_a_room_is_caught(tmp_path: Path) -> None:
+    shutil.copytree(PACKAGE, tmp_path / "cadpanel", ignore=shutil.ignore_patterns("__pycache__"))
+    file = tmp_path / "cadpanel" / "features" / "rulings.py"
+    file.write_text(
+        f"{file.read_text(encoding='utf-8')}\nif __debug__:\n    import cadpanel.features.walk\n", encoding="utf-8"
     )
-    assert answer.returncode == 1, answer.stderr
-    broken = [line for line in answer.stdout.splitlines() if " BROKEN" in line]
-    assert any(line.startswith(contract) for line in broken), answer.stdout
+    assert "No circles between the files of a room" in broken_contracts(tmp_path)
+
+
+def test_every_room_of_the_cad_side_has_a_name() -> None:
+    loose = {path.name for path in (PACKAGE / "brep").glob("*.py")}
+    assert loose == {"__init__.py", "read.py", "server.py", "survey.py"}
+
+
+def test_every_folder_says_what_it_is_for() -> None:
+    silent = [
+        str(folder.relative_to(ROOT))
+        for folder in PACKAGE.rglob("*")
+        if folder.is_dir()
+        and folder.name != "__pycache__"
+        and not (folder / "__init__.py").read_text(encoding="utf-8").startswith('"""')
+    ]
+    assert silent == []
 
 
 def test_importing_cadpanel_is_light() -> None:

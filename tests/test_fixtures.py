@@ -7,7 +7,7 @@ import pytest
 
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.deliver import deliver
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from fixtures.make_fixtures import FIXTURES, HERE, two_stage_gaps
 

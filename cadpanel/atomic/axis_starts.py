@@ -14,14 +14,11 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.atomic.clouds import Clouds
 from cadpanel.atomic.ruling import Rulings
-from cadpanel.geometry.frames import cross
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+from cadpanel.geometry.vectors import cross
 
 _DIRECTIONS = 160
 _NEIGHBOURS = 6

@@ -8,12 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import FitError
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Samples whose distance from one line is below this share of their extent lie on it: no surface is determined.
 LARGEST = 1e15
@@ -146,12 +144,12 @@ def _numbers(name: str, values: ArrayLike) -> Array:
         raise FitError(f"{name} must be a rectangular array of numbers") from error
 
 
-def _any_not_finite(values: Array, used: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    bad: NDArray[np.bool_] = np.any(used & ~np.all(np.isfinite(values), axis=2), axis=1)
+def _any_not_finite(values: Array, used: BoolArray) -> BoolArray:
+    bad: BoolArray = np.any(used & ~np.all(np.isfinite(values), axis=2), axis=1)
     return bad
 
 
-def _refuse(bad: NDArray[np.bool_], reason: str, what: str, counts: IntArray | None = None) -> None:
+def _refuse(bad: BoolArray, reason: str, what: str, counts: IntArray | None = None) -> None:
     """Raise for the first set that is bad; a single set needs no number."""
     if not np.any(bad):
         return

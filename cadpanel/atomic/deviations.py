@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.atomic.clouds import Clouds
 from cadpanel.atomic.ruling import CURVATURE, SHIFT, TAPER, TURN_B, TURN_N, TURN_T, Rulings, distance_rows
-
-Array = NDArray[np.float64]
 
 # Reciprocal condition of the scaled normal matrix below which the samples do not determine all unknowns.
 _UNDETERMINED = 1e-13

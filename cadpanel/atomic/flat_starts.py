@@ -10,13 +10,10 @@ minima, also those with an axis across.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.atomic.clouds import Clouds
 from cadpanel.atomic.ruling import Rulings
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 _DIRECTIONS = 24
 # Half the samples' extent along the ruling over the distance of the apex: 0 is the cylinder, beyond 1 the apex lies

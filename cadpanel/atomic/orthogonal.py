@@ -12,13 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.atomic.ruling import CONE, TURN_N, Rulings, distance_rows, moved, passed_apex_rows
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.intp]
 
 # A step that moves the surface by less than this share of the samples' extent is rounding.
 _ARRIVED = 2e-15

@@ -10,14 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.atomic.clouds import Clouds
 from cadpanel.atomic.orthogonal import Descent, descend
 from cadpanel.atomic.ruling import Rulings, anchored
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +49,7 @@ _SAMPLES = 2_500
 
 def race(
     clouds: Clouds, starts: Callable[[Clouds], list[Rulings]], unknowns: tuple[int, ...]
-) -> tuple[Rulings, NDArray[np.bool_]]:
+) -> tuple[Rulings, BoolArray]:
     """The best rulings (n) of all starts and whether they have converged, in the units and axes of the clouds.
 
     Args:
@@ -90,7 +87,7 @@ def joined(lists: list[Rulings], count: int) -> Rulings:
     )
 
 
-def _race(clouds: Clouds, runners: Rulings, unknowns: tuple[int, ...]) -> tuple[Rulings, NDArray[np.bool_]]:
+def _race(clouds: Clouds, runners: Rulings, unknowns: tuple[int, ...]) -> tuple[Rulings, BoolArray]:
     count = len(clouds.points)
     owners = np.repeat(np.arange(count), len(runners.points) // count)
     for round_ in _ROUNDS:

@@ -14,11 +14,9 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.atomic.deviations import angle_variance, axis_covariance
-
-Array = NDArray[np.float64]
 
 # An apex that is farther off than the samples' extent over this cannot be told from one at infinity.
 _APEX_AT_INFINITY = 1e-13
@@ -49,7 +47,7 @@ class AtomicFits:
     rms: Array
     max: Array
     covariance: Array
-    converged: NDArray[np.bool_]
+    converged: BoolArray
     sizes: Array
 
     @property

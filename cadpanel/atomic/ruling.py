@@ -19,13 +19,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.geometry.frames import cayley
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.intp]
 
 # The increments a ruling is moved by: turns about b, t, n (radians), shift along n, curvature, taper.
 TURN_B, TURN_T, TURN_N, SHIFT, CURVATURE, TAPER = range(6)

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from cadpanel.arrays import Array
 from cadpanel.atomic.clouds import Clouds, clouds
 from cadpanel.atomic.deviations import covariances
 from cadpanel.atomic.race import race
 from cadpanel.atomic.result import AtomicFits
 from cadpanel.atomic.ruling import CONE, PLANE, Rulings, distances, normals, passed_apex
-
-Array = NDArray[np.float64]
 
 
 def fit_surfaces(

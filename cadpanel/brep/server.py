@@ -8,7 +8,7 @@ import pickle
 import resource
 import sys
 import traceback
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO, cast
 
@@ -17,40 +17,14 @@ from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import format_of
-from cadpanel.brep.files.model import Model, children, compound_of, packed, shapes_of, unpacked
+from cadpanel.brep.files.model import Model
+from cadpanel.brep.files.packing import PackedModel, PackedProducts
 from cadpanel.brep.files.step import STEP
-from cadpanel.brep.files.step_products import NamedShape, Products, read_products
+from cadpanel.brep.files.step_products import read_products
 from cadpanel.brep.isolation.client import HEADER, WORKED_ON, Request, Task, Work, read_here
+from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PackedModel:
-    """A model on its way between interpreters: all its shapes in one piece, so that what they share stays shared."""
-
-    model: Model
-    shapes: bytes
-
-    def unpack(self) -> Model:
-        """The model again."""
-        shapes = children(unpacked(self.shapes))
-        parts = tuple(replace(part, shape=shape) for part, shape in zip(self.model.parts, shapes, strict=True))
-        return replace(self.model, parts=parts)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PackedProducts:
-    """Named shapes on their way between interpreters, and the unit that their file says."""
-
-    names: tuple[str, ...]
-    unit: str | None
-    shapes: bytes
-
-    def unpack(self) -> Products:
-        """The shapes again."""
-        shapes = zip(self.names, children(unpacked(self.shapes)), strict=True)
-        return Products(shapes=tuple(NamedShape(name, shape) for name, shape in shapes), unit=self.unit)
 
 
 def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:

@@ -33,7 +33,7 @@ from cadpanel.brep.skin.curvature import Curvature, curvature_of
 from cadpanel.brep.skin.face_cleanup import SkinFace, skin_faces
 from cadpanel.brep.skin.lips import SECTIONS, Lip, lips_of
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import norm
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.settings import ReferenceSettings, file_named
 
 # Faces that fold by more than this where they meet are different surfaces here, degrees: a lip is round.

@@ -5,8 +5,7 @@ from __future__ import annotations
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
-from cadpanel.delivery.folder import delivery_folder
-from cadpanel.delivery.names import COMPARISON
+from cadpanel.delivery.folder import COMPARISON, delivery_folder
 from cadpanel.delivery.records.comparison import ComparisonModel, write_comparison
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
@@ -85,7 +84,8 @@ def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSetti
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
     start_reader()
     from cadpanel.brep.read import read_reference
-    from cadpanel.delivery.records.table1 import compare as compare_reference
+    from cadpanel.delivery.records.table1 import comparison_record
+    from cadpanel.studies.table1 import compare as compare_reference
 
     def tell(feature: str, method: str, round_: int, excess: float) -> None:
         step = f"{method.replace('_', '-')}, {feature}"
@@ -94,4 +94,5 @@ def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSetti
         else:
             shown.round(step, round_, excess)
 
-    return compare_reference(read_reference(file, how), settings, progress=tell)
+    panels = read_reference(file, how)
+    return comparison_record(panels, settings, compare_reference(panels, settings, progress=tell))

@@ -117,7 +117,7 @@ def _run(
     start_reader()
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
-    from cadpanel.fitting.result import fit as fit_reference
+    from cadpanel.fitting.run import fit as fit_reference
 
     began = time.perf_counter()
     reference = read_reference(file, how)

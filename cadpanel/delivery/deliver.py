@@ -7,10 +7,8 @@ from collections import Counter
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
-from cadpanel.delivery.folder import delivery_folder
-from cadpanel.delivery.names import PANELS, REPORT, SKINS
+from cadpanel.delivery.folder import PANELS, REPORT, SKINS, delivery_folder
 from cadpanel.delivery.outputs.step_files import write_skins, write_solids
-from cadpanel.delivery.proof import prove
 from cadpanel.delivery.records.from_fit import (
     baselines_record,
     panel_records,
@@ -23,6 +21,7 @@ from cadpanel.delivery.records.report import CertificateModel, ReportModel, Timi
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet, Progress, build_panels, say_nothing
+from cadpanel.delivery.verify import prove
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
 

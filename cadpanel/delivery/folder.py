@@ -15,8 +15,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from cadpanel.delivery.names import COMPARISON, PANELS, REPORT, SKINS
 from cadpanel.errors import CadpanelError, DeliveryError
+
+PANELS = "panels.step"
+SKINS = "skins.step"
+REPORT = "report.json"
+COMPARISON = "compare.json"
 
 MARKS_OF_A_DELIVERY = (REPORT, COMPARISON)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""

@@ -9,13 +9,12 @@ from functools import cache
 from typing import Literal
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.feature import MOST_PATCHES, Cuts, Feature
+from cadpanel.features.feature import MOST_PATCHES, Feature
 from cadpanel.features.patches import Cone, Cylinder, Patch, Plane
 from cadpanel.features.polygon import Polygon
+from cadpanel.features.rulings import Cuts, PanelFeature
 
 Tilt = Literal["free", "fixed"]
-PanelFeature = Feature | Polygon
-"""What can be fitted to one panel."""
 
 POLYGON = "planar-polygon"
 AUTO = "auto"

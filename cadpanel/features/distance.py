@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.features.walk import Walk
+from cadpanel.arrays import Array, IntArray
+from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import (
     INNER,
     beyond,
@@ -15,9 +15,6 @@ from cadpanel.geometry.cone import (
     plane_distance,
     plane_inner,
 )
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 def assign(walked: Walk, x: Array) -> IntArray:

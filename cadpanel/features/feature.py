@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, field
-from typing import Literal, Self, get_args
+from typing import Self, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.independence import refuse_dependent
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, chain_edges
 from cadpanel.features.patches import Patch
-from cadpanel.features.walk import Points, Walk, end_points, walk
+from cadpanel.features.rulings import Cuts, Points, Walk
+from cadpanel.features.walk import end_points, walk
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
-
-Cuts = Literal["mitre", "upright", "parallel", "square"]
 MOST_PATCHES = 64
 
 # The anchor ruling sits in the middle of the anchor patch and may move only in ways that change the panel. Sliding it

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
+from cadpanel.features.cut_planes import cut_plane_rates
 from cadpanel.features.distance import patch_distance_inner, patch_outer
 from cadpanel.features.panel_edges import ARC_SHARES
-from cadpanel.features.walk import cut_plane_rates, end_points, walk
-
-if TYPE_CHECKING:  # a feature asks for its rank when it is made
-    from cadpanel.features.feature import Feature
-
-Array = NDArray[np.float64]
+from cadpanel.features.rulings import PanelFeature
+from cadpanel.features.walk import end_points, walk
 
 # A direction of the unknowns that moves nothing has a singular value below this share of the largest.
 NO_MOTION = 1e-9
@@ -27,7 +22,7 @@ TRIALS = 3
 LARGEST_FIXED = 0.3
 
 
-def refuse_dependent(feature: Feature) -> None:
+def refuse_dependent(feature: PanelFeature) -> None:
     """Refuse a feature of which some unknowns, together, move nothing of the skin.
 
     Raises:
@@ -43,7 +38,7 @@ def refuse_dependent(feature: Feature) -> None:
         )
 
 
-def _dependent(feature: Feature) -> list[str]:
+def _dependent(feature: PanelFeature) -> list[str]:
     """Names of the unknowns that take part in a dependency, of the worst one; empty where there is none.
 
     The anchor's numbers, which nobody can fix, are named only where nothing else takes part.
@@ -60,7 +55,7 @@ def _dependent(feature: Feature) -> list[str]:
     return [name for name in names if not name.startswith("anchor:")] or names
 
 
-def motions(feature: Feature, values: Array) -> Array:
+def motions(feature: PanelFeature, values: Array) -> Array:
     """(panels, rows, free) how what can be seen of a panel follows the unknowns.
 
     Seen are the surface (the distances of points that lie on its patches), the four outer corners, and the planes that
@@ -86,7 +81,7 @@ def motions(feature: Feature, values: Array) -> Array:
     return feature.by_unknowns(np.concatenate(rows, axis=1))
 
 
-def typical_values(feature: Feature) -> Array:
+def typical_values(feature: PanelFeature) -> Array:
     """(TRIALS, numbers) numbers of plausible panels about 1 long; always the same."""
     random = np.random.default_rng(0)
     spans = {"width": (0.1, 0.3), "radius": (0.2, 0.6), "half_angle": (0.02, 0.1), "sweep": (0.2, 0.5)}
@@ -101,7 +96,7 @@ def typical_values(feature: Feature) -> Array:
     return _in_scale(feature, feature.expand(unknowns))
 
 
-def _in_scale(feature: Feature, values: Array) -> Array:
+def _in_scale(feature: PanelFeature, values: Array) -> Array:
     """Fixed lengths are in mm, the others about 1: bring those that are fixed into the same range.
 
     All by one factor: two cylinders of one radius depend on each other, two of different radii do not.

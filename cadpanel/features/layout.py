@@ -10,12 +10,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cadpanel.features.catalogue import PanelFeature
-from cadpanel.features.walk import Walk
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.features.rulings import PanelFeature, Walk
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
-BoolArray = NDArray[np.bool_]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
 

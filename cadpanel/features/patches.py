@@ -9,13 +9,12 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
 from cadpanel.features.numbers import LARGEST, Number, Value
-from cadpanel.geometry.frames import cross, rotate_about, rotation_twist
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.frames import rotate_about, rotation_twist
+from cadpanel.geometry.vectors import cross
 
 _QUARTER = 0.5 * np.pi
 

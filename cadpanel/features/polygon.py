@@ -7,17 +7,14 @@ from dataclasses import dataclass, field
 from typing import Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
-from cadpanel.features.walk import Points, Rulings, Walk
+from cadpanel.features.rulings import Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 MOST_CORNERS = 64
 

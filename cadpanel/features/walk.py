@@ -7,61 +7,18 @@ cuts are "square" it is so in the frame of the anchor ruling, and moves with it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
+from cadpanel.features.cut_planes import carried, cut_plane_rates, cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import Frames
-from cadpanel.geometry.frames import cayley, cayley_rates, cross, dot, point_velocity
-
-if TYPE_CHECKING:  # a feature walks, so the walk cannot import it
-    from cadpanel.features.feature import Feature
-    from cadpanel.features.polygon import Polygon
-
-Array = NDArray[np.float64]
+from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk
+from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
+from cadpanel.geometry.vectors import cross, dot
 
 # Panels differentiated together: what is needed on the way stays in the processor's cache and off the system's memory.
 _CHUNK = 256
-
-
-@dataclass(frozen=True, slots=True)
-class Rulings:
-    """n x R ruling frames and their twists.
-
-    Attributes:
-        p, b, t, n: (panels, R, 3) each.
-        twist: (panels, R, 6, N) for the N numbers of the feature, or None where no derivatives were asked for.
-    """
-
-    p: Array
-    b: Array
-    t: Array
-    n: Array
-    twist: Array | None
-
-
-@dataclass(frozen=True, slots=True)
-class Walk:
-    """A batch of panels, walked.
-
-    Attributes:
-        feature: the feature of all these panels.
-        values: (panels, N) all numbers, the fixed ones included.
-        anchor: the ruling in the middle of the anchor patch (R = 1).
-        edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
-        carriers: per patch the ruling that its radius is measured at (R = k).
-        arcs: rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
-    """
-
-    feature: Feature | Polygon
-    values: Array
-    anchor: Rulings
-    edges: Rulings
-    carriers: Rulings
-    arcs: Rulings
 
 
 class _Step:
@@ -71,7 +28,7 @@ class _Step:
         self.frames = frames
         self.twist = twist
 
-    def carry(self, feature: Feature, patch: int, values: Array, way: float) -> _Step:
+    def carry(self, feature: PanelFeature, patch: int, values: Array, way: float) -> _Step:
         numbers = feature.patch_slice(patch)
         frames, own = feature.patches[patch].carry(self.frames, values[:, numbers], way)
         if self.twist is None:
@@ -82,7 +39,7 @@ class _Step:
         return _Step(frames, twist)
 
 
-def walk(feature: Feature, values: Array, *, derivatives: bool) -> Walk:
+def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
     """Walk all panels from the middle of their anchor patch to both sides.
 
     Args:
@@ -116,13 +73,13 @@ def walk(feature: Feature, values: Array, *, derivatives: bool) -> Walk:
     )
 
 
-def _inside(feature: Feature, patch: int, carrier: _Step, values: Array, share: float) -> _Step:
+def _inside(feature: PanelFeature, patch: int, carrier: _Step, values: Array, share: float) -> _Step:
     if patch == feature.anchor:
         return carrier.carry(feature, patch, values, share - 0.5)
     return carrier.carry(feature, patch, values, share if patch > feature.anchor else share - 1.0)
 
 
-def _anchor(feature: Feature, values: Array, derivatives: bool) -> _Step:
+def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
     panels = len(values)
     shift, turn = values[:, :2], values[:, 2:5]
     rotation = cayley(turn)
@@ -156,62 +113,6 @@ def _none(like: _Step) -> Rulings:
     return Rulings(empty, empty, empty, empty, twist)
 
 
-@dataclass(frozen=True, slots=True)
-class Points:
-    """Points of the panels that follow the numbers.
-
-    Attributes:
-        position: (panels, R, 3).
-        jacobian: (panels, R, 3, N) or None without derivatives.
-    """
-
-    position: Array
-    jacobian: Array | None
-
-
-def cut_planes(walked: Walk) -> tuple[Array, Array]:
-    """The cut planes m . x = s: m (panels, 2, 3), not of unit length, and s (panels, 2)."""
-    feature, values = walked.feature, walked.values
-    cuts = np.stack([values[:, feature.cut_slice(end)] for end in (0, 1)], axis=1)
-    m = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
-    if not _carried(feature):
-        return m, cuts[..., 0]
-    anchor = walked.anchor
-    m = m @ np.stack([anchor.b[:, 0], anchor.t[:, 0], anchor.n[:, 0]], axis=1)
-    return m, cuts[..., 0] + dot(m, anchor.p)
-
-
-def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
-    """How `cut_planes` follow the numbers: dm (panels, 2, 3, N) and ds (panels, 2, N)."""
-    feature, anchor = walked.feature, walked.anchor
-    panels, count = walked.values.shape
-    dm, ds = np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))
-    for end in (0, 1):
-        at = feature.cut_slice(end).start
-        ds[:, end, at] = 1.0
-        if not _carried(feature):
-            dm[:, end, 0, at + 1] = dm[:, end, 2, at + 2] = 1.0
-            continue
-        for number, axis in ((at + 1, anchor.b), (at + 2, anchor.n)):
-            dm[:, end, :, number] = axis[:, 0]
-            ds[:, end, number] = dot(axis[:, 0], anchor.p[:, 0])
-    if _carried(feature):
-        if anchor.twist is None:
-            raise ValueError("the panels were walked without derivatives")
-        m, _ = cut_planes(walked)
-        turned = cross(np.swapaxes(anchor.twist[:, :, :3], 2, 3), m[:, :, None])
-        dm += np.swapaxes(turned, 2, 3)
-        # The plane's point p moves along: d(m . p) = dm . p + m . v(p).
-        ds += dot(turned, anchor.p[:, :, None]) + np.einsum(
-            "pex,pxj->pej", m, point_velocity(anchor.twist[:, 0], anchor.p[:, 0])
-        )
-    return dm, ds
-
-
-def _carried(feature: Feature | Polygon) -> bool:
-    return feature.cuts == "square"
-
-
 def end_points(walked: Walk, rulings: Rulings) -> Points:
     """Where R rulings pierce the two cut planes, (panels, 2 R, 3): first all of end 0, then all of end 1.
 
@@ -226,7 +127,7 @@ def end_points(walked: Walk, rulings: Rulings) -> Points:
     if rulings.twist is None:
         return Points(position.reshape(panels, 2 * count, 3), None)
     moved = np.empty((panels, 2, count, 3, walked.values.shape[1]))
-    rates = cut_plane_rates(walked) if _carried(walked.feature) else None
+    rates = cut_plane_rates(walked) if carried(walked.feature) else None
     for start in range(0, panels, _CHUNK):
         part = slice(start, start + _CHUNK)
         moved[part] = _moved(walked, rulings, part, m[part], position[part], rate[part])
@@ -243,7 +144,7 @@ def _moved(walked: Walk, rulings: Rulings, part: slice, m: Array, position: Arra
         raise ValueError("the panels were walked without derivatives")
     moved = point_velocity(rulings.twist[part, None], position)
     along = -(m[:, :, None, None] @ moved)[..., 0, :]
-    if not _carried(walked.feature):
+    if not carried(walked.feature):
         for end in (0, 1):
             at = walked.feature.cut_slice(end).start
             along[:, end, :, at] += 1.0

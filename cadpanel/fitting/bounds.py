@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
 from cadpanel.features.numbers import Number
-
-Array = NDArray[np.float64]
 
 # A flange keeps this width in its middle, mm.
 LEAST_WIDTH = 1.0

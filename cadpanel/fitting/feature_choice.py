@@ -5,20 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import PanelError
-from cadpanel.features.catalogue import POLYGON, PanelFeature, for_corners
+from cadpanel.features.catalogue import POLYGON, for_corners
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.measures.fit import largest_deviations
-from cadpanel.fitting.methods.concurrent import fit_alone
+from cadpanel.fitting.methods.local import fit_alone
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.chain_checks import check_skin
 from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.suitability import check_fold
-
-Array = NDArray[np.float64]
 
 CHEAPEST_FIRST = (
     POLYGON,
@@ -64,7 +63,7 @@ class Choice:
             for place, panel in zip(self.chosen.tolist(), self._reference.panels, strict=True)
         ]
 
-    def promote(self, panels: NDArray[np.intp]) -> bool:
+    def promote(self, panels: IntArray) -> bool:
         """Give panels that break a limit the next feature that suits them.
 
         Returns:
@@ -82,7 +81,7 @@ class Choice:
                     break
         return changed
 
-    def forbid(self, panels: NDArray[np.intp]) -> bool:
+    def forbid(self, panels: IntArray) -> bool:
         """Take panels' features away, as nothing could be built of them among their neighbours, and choose others.
 
         Returns:
@@ -96,12 +95,12 @@ class Choice:
         self.chosen[panels] = self._first_within(self.deviations[panels])
         return bool(np.isfinite(self.deviations[panels, self.chosen[panels]]).all())
 
-    def _first_within(self, deviations: Array) -> NDArray[np.intp]:
+    def _first_within(self, deviations: Array) -> IntArray:
         within = deviations <= self._largest
-        first: NDArray[np.intp] = np.where(within.any(axis=1), within.argmax(axis=1), deviations.argmin(axis=1))
+        first: IntArray = np.where(within.any(axis=1), within.argmax(axis=1), deviations.argmin(axis=1))
         return first
 
-    def _try(self, place: int, panels: NDArray[np.intp]) -> None:
+    def _try(self, place: int, panels: IntArray) -> None:
         self._tried[panels, place] = True
         suited = [i for i in panels.tolist() if self._suits(self._reference.panels[i], place)]
         if not suited:

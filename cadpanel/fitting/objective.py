@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.problem import Problem
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.levenberg_marquardt import Bounds
-from cadpanel.terms.rows import Term
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from cadpanel.terms.term import Term
 
 
 class Objective:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.features.polygon import Polygon
 from cadpanel.fitting.start.chains import Start, end_plane
-from cadpanel.geometry.frames import dot
+from cadpanel.geometry.vectors import dot
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.terms.limits.corner_drift import Limited, Outline
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.features.catalogue import PanelFeature
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.distance import skin_normals
 from cadpanel.features.layout import Layout
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import allowed_patches, check_blends, stretches
 from cadpanel.fitting.bounds import LEAST_WIDTH, natural_bounds
@@ -20,18 +20,16 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start.chains import Start, start
 from cadpanel.reference.model import Reference
 from cadpanel.terms.arc_gap import ArcGap
-from cadpanel.terms.corner_gap import CornerGap, Placement
+from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.edge_gap import MixedGap
 from cadpanel.terms.limits.corner_drift import DriftLimit, Outline
 from cadpanel.terms.limits.flange_width import WidthLimit
 from cadpanel.terms.limits.min_radius import RadiusLimit
-from cadpanel.terms.rows import Term
+from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import SeamBatch, batches
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+from cadpanel.terms.term import Term
 
 SeamTerm = CornerGap | ArcGap | MixedGap
 
@@ -130,7 +128,7 @@ class Problem:
         """Deviation, the weak pull of corners to the outline, and what can be made: what a panel wants by itself."""
         return [self.deviation, *self.drift_limits(FitSettings(), 0.0), *self.shop_limits(settings)]
 
-    def placement_unknowns(self) -> NDArray[np.bool_]:
+    def placement_unknowns(self) -> BoolArray:
         """(panels, size) which unknowns move a panel or trim it: all but its curved patches' numbers."""
         moves = self.layout.used.copy()
         for group in self.layout.groups:

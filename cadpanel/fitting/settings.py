@@ -8,8 +8,9 @@ from numbers import Integral, Real
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.catalogue import AUTO, PanelFeature, Tilt, for_corners
+from cadpanel.features.catalogue import AUTO, Tilt, for_corners
 from cadpanel.features.feature import Feature
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12

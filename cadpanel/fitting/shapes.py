@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group
-from cadpanel.features.walk import Walk, cut_planes
+from cadpanel.features.rulings import Walk
 from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.end_curves import EndCurves
-from cadpanel.geometry.frames import dot
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
+from cadpanel.geometry.vectors import dot
 from cadpanel.reference.model import Reference
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 def panel_shapes(problem: Problem, reference: Reference, unknowns: Array) -> tuple[AnyShape, ...]:

@@ -12,12 +12,13 @@ from typing import Literal, TypeVar, get_args
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_cone, radius_range
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH, THICKEST_SHEET, THINNEST_SHEET
 from cadpanel.geometry.polygon_checks import check_polygon
 from cadpanel.geometry.self_crossing import crosses_itself
-from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 
 Shape = TypeVar("Shape", PanelShape, PolygonShape)
 SkinSide = Literal["outer", "inner"]

@@ -9,10 +9,8 @@ moved by a twist (omega, v) the distance changes by -(e . v + (x x e) . omega).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
+from cadpanel.arrays import Array, BoolArray
 
 # The eight numbers that a patch's distance depends on: the twist of its ruling (6), normal radius, half angle.
 INNER = 8

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.geometry.frames import cross
-from cadpanel.geometry.shape import Array, ConePatch
+from cadpanel.arrays import Array
+from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.vectors import cross
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.geometry.frames import dot
-from cadpanel.geometry.shape import Array
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import dot
 
 PEAKS = 4
 """Samples on each piece around which the farthest point is looked for."""

@@ -9,11 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.frames import cross, dot, rotate_about
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.frames import rotate_about
+from cadpanel.geometry.vectors import cross, dot
 
 # Points a curved patch is followed at, and steps of the closest-point iteration from the nearest of them.
 _ARC_POINTS = 24
@@ -46,7 +45,7 @@ class EndCurves:
     cut_point: Array
     cut_normal: Array
 
-    def take(self, index: NDArray[np.intp]) -> EndCurves:
+    def take(self, index: IntArray) -> EndCurves:
         """The curves at `index`."""
         return EndCurves(*(getattr(self, f.name)[index] for f in fields(self)))
 

@@ -10,23 +10,9 @@ Manipulation, 1994, chapter 2).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
-
-def cross(a: Array, b: Array) -> Array:
-    """Cross product over the last axis, (..., 3); several times faster than numpy.cross on many short vectors."""
-    if a.ndim == b.ndim == 1:  # plain numbers are ten times as fast for a single pair
-        (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
-        return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-    (ux, uy, uz), (vx, vy, vz) = ((vectors[..., 0], vectors[..., 1], vectors[..., 2]) for vectors in (a, b))
-    return np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], axis=-1)
-
-
-def dot(a: Array, b: Array) -> Array:
-    """Inner product over the last axis, (...)."""
-    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import cross, dot
 
 
 def cayley(w: Array) -> Array:

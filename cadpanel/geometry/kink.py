@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from cadpanel.geometry.frames import cross, dot
-from cadpanel.geometry.shape import Array
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import cross, dot
 
 EDGE_POINTS = 5
 """Points along an edge, its ends included, at which the normals are compared."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
-from cadpanel.geometry.frames import cross
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
-from cadpanel.geometry.shape import Array, PolygonShape
+from cadpanel.geometry.shape import PolygonShape
+from cadpanel.geometry.vectors import cross
 
 FLATNESS = 1e-7
 """Farthest corner from the plane, mm."""

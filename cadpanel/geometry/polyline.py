@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import norm, unit
 
 # Points of the local cubic that carries values between two points of a curve.
 STENCIL = 4
@@ -15,22 +15,6 @@ STENCIL = 4
 FOOT_STEPS = 4
 # Where a polyline turns by more than this from one segment to the next it is taken for one with a corner, degrees.
 SHARP_TURN = 15.0
-
-
-def norm(vectors: Array) -> Array:
-    """Return the lengths (...,) of (..., 3) vectors; for many short arrays quicker than numpy.linalg.norm."""
-    lengths: Array = np.sqrt(np.einsum("...d,...d->...", vectors, vectors))
-    return lengths
-
-
-def cross(first: Array, second: Array) -> Array:
-    """Return the cross products (..., 3); for many short arrays quicker than numpy.cross."""
-    product = np.empty(np.broadcast_shapes(first.shape, second.shape))
-    (a, b, c), (d, e, f) = ((vectors[..., 0], vectors[..., 1], vectors[..., 2]) for vectors in (first, second))
-    product[..., 0] = b * f - c * e
-    product[..., 1] = c * d - a * f
-    product[..., 2] = a * e - b * d
-    return product
 
 
 def arc_length(points: Array) -> Array:
@@ -80,19 +64,6 @@ def interpolate(lengths: Sequence[Array], values: Array, positions: Sequence[Arr
     )
     result: Array = np.einsum("sk,skd->kd", basis, values[stencil])
     return result
-
-
-def unit(vectors: Array) -> Array:
-    """Return the (..., 3) vectors at length 1; those without length stay zero."""
-    sizes = norm(vectors)[..., None]
-    scaled: Array = vectors / np.where(sizes > 0.0, sizes, 1.0)
-    return scaled
-
-
-def side_of(starts: Array, stops: Array, points: Array) -> Array:
-    """On which side of the way from starts to stops (..., 2) points lie: (...), above 0 on the left."""
-    ways, to = stops - starts, points - starts
-    return np.asarray(ways[..., 0] * to[..., 1] - ways[..., 1] * to[..., 0], dtype=np.float64)
 
 
 def end_tangents(starts: Array) -> Array:

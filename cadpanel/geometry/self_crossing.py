@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.frames import cross
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.vectors import cross
 
 ARC_POINTS = 33
 """Points by which an arc is stood in for: within 1e-3 of its radius even at half a turn."""

@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.frames import cross
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import cross
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

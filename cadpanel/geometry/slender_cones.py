@@ -8,8 +8,9 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.shape import ConePatch, PanelShape, PolygonShape
 
 Shape = TypeVar("Shape", PanelShape, PolygonShape)
 SMALLEST_HALF_ANGLE = 5e-6

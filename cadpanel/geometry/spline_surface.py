@@ -11,11 +11,8 @@ from bisect import bisect_left, bisect_right
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.shape import Array
-
-Indices = NDArray[np.intp]
+from cadpanel.arrays import Array, IntArray
 
 CHUNK = 4096
 """Points worked on at once, so that everything stays in the processor's cache."""
@@ -58,7 +55,7 @@ class SplineSurfaces:
         self._knots = tuple(_padded([surface.knots[way] for surface in surfaces]) for way in range(2))
         self._spans = tuple(np.array([_spans(surface, way) for surface in surfaces], dtype=np.intp) for way in range(2))
 
-    def evaluate(self, owners: Indices, parameters: Array) -> Array:
+    def evaluate(self, owners: IntArray, parameters: Array) -> Array:
         """(p, 3, 3) the point and the derivatives by u and by v, mm, at (p, 2) parameters of the (p,) owners."""
         result = np.empty((len(owners), 3, 3))
         for start in range(0, len(owners), CHUNK):
@@ -66,7 +63,7 @@ class SplineSurfaces:
             result[part] = self._evaluate(owners[part], parameters[part])
         return result
 
-    def _evaluate(self, owners: Indices, parameters: Array) -> Array:
+    def _evaluate(self, owners: IntArray, parameters: Array) -> Array:
         (span_u, basis_u, slope_u), (span_v, basis_v, slope_v) = (
             self._basis(way, owners, parameters[:, way]) for way in range(2)
         )
@@ -88,7 +85,7 @@ class SplineSurfaces:
             values = _quotient(values)
         return values.transpose(1, 0, 2)
 
-    def _basis(self, way: int, owners: Indices, at: Array) -> tuple[Indices, Array, Array]:
+    def _basis(self, way: int, owners: IntArray, at: Array) -> tuple[IntArray, Array, Array]:
         """(p,) the span of each parameter, and (degree + 1, p) the basis functions there and their derivatives."""
         knots, degree = self._knots[way], self._degrees[way]
         least, greatest = self._spans[way][owners].T

@@ -13,10 +13,11 @@ from typing import Literal
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import ConeCut, axis_frame, cut_cone
-from cadpanel.geometry.frames import cross
 from cadpanel.geometry.polygon_checks import polygon_area
-from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.vectors import cross
 
 SWEEP_NODES = 48
 _SWEEP_ABSCISSAE, _SWEEP_WEIGHTS = np.polynomial.legendre.leggauss(SWEEP_NODES)

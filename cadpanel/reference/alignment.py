@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.polyline import norm
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import PanelReference, Seam
 from cadpanel.reference.oriented_panel import Sheet, turning
 from cadpanel.reference.seam_finding import SideContact
-
-Array = NDArray[np.float64]
 
 # Where the loop's sides, counted from the one that becomes end 0, stand among the edges of a panel.
 _PLACE = {0: 0, 2: 1, 3: 2, 1: 3}

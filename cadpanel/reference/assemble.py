@@ -8,7 +8,7 @@ from numbers import Real
 import numpy as np
 
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.geometry.polyline import norm
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.alignment import align, find_seams, orient
 from cadpanel.reference.ends_and_outside import first_ends, outer_faces
 from cadpanel.reference.junctions import part_sides

@@ -11,13 +11,11 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.polyline import unit
+from cadpanel.arrays import Array
+from cadpanel.geometry.vectors import unit
 from cadpanel.reference.oriented_panel import Sheet
 from cadpanel.reference.seam_finding import SideContact
-
-Array = NDArray[np.float64]
 
 # A panel that turns by this much more one way than the other knows its ends, radians.
 CLEARLY_FOLDED = np.radians(3.0)

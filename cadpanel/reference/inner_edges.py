@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.polyline import STENCIL, arc_length, arc_lengths, distances_to_curves, interpolate, norm
+from cadpanel.arrays import Array, BoolArray
+from cadpanel.geometry.polyline import STENCIL, arc_length, arc_lengths, distances_to_curves, interpolate
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import RawPanel
-
-Array = NDArray[np.float64]
 
 # Two edges coincide when they do at this many evenly spread points.
 PROBES = 9
@@ -134,9 +133,9 @@ def split_at_vertices(edges: Sequence[Edge], tolerance: float) -> list[Edge]:
     return pieces
 
 
-def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
+def _near(first: Array, second: Array, tolerance: float) -> BoolArray:
     """Tell for every pair of (m, 3) and (k, 3) points whether they lie within the tolerance: (m, k)."""
-    near: NDArray[np.bool_] = norm(first[:, None] - second[None]) <= tolerance
+    near: BoolArray = norm(first[:, None] - second[None]) <= tolerance
     return near
 
 

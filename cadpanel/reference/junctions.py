@@ -7,14 +7,13 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cadpanel.geometry.polyline import arc_length, norm, unit
+from cadpanel.arrays import Array
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.inner_edges import Edge, positions_on
 from cadpanel.reference.outline import EVEN_PARTS, FOUR, Outline, Side
-
-Array = NDArray[np.float64]
 
 
 def part_sides(outlines: Sequence[Outline], tolerance: float) -> list[Outline]:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.geometry.polyline import distances_to_curves, norm
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.polyline import distances_to_curves
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.oriented_panel import Sheet, curves
 from cadpanel.reference.seam_finding import CHUNK, SideContact
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Sides are along each other up to this many tolerances from one another, or this part of the longer one's length where
 # that is no more than this share of the shorter one's.

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cadpanel.geometry.polyline import cross, norm, unit
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.vectors import cross, norm, unit
 from cadpanel.reference.model import RawPanel, Turning
 from cadpanel.reference.outline import Outline, Side
-
-Array = NDArray[np.float64]
 
 # Where the mean of a panel's normals is shorter than this, it winds round too far to have a side that faces a viewer.
 WOUND = 0.1
@@ -130,7 +128,7 @@ def _spread(side: Side) -> float:
     return float(np.arccos(np.clip((side.normals @ side.normals.T).min(), -1.0, 1.0)))
 
 
-def curves(sheets: Sequence[Sheet]) -> tuple[Array, NDArray[np.intp]]:
+def curves(sheets: Sequence[Sheet]) -> tuple[Array, IntArray]:
     """All sides of all panels, (s, q, 3), and (s, 2) the panel and side that each is."""
     owners = [(panel, side) for panel, one in enumerate(sheets) for side in range(len(one.sides))]
     lines = np.array([sheets[panel].sides[side].points for panel, side in owners])

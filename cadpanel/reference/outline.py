@@ -7,15 +7,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.errors import OutlineError
-from cadpanel.geometry.polyline import end_tangents, interpolate, norm, unit
+from cadpanel.geometry.polyline import end_tangents, interpolate
+from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.inner_edges import Contact, Edge, free_edges, panel_edges, split_at_vertices
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline_faults import check_faces, check_loops, narrowest, refuse_hairs
-
-Array = NDArray[np.float64]
 
 # Faces of one panel touch where they come within this, mm, and within this part of the panel's size.
 TOUCH_TOLERANCE = 1.0

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.errors import OutlineError, PanelError
-from cadpanel.geometry.polyline import arc_lengths, cross, distances_to_polylines
+from cadpanel.geometry.polyline import arc_lengths, distances_to_polylines
+from cadpanel.geometry.vectors import cross
 from cadpanel.reference.inner_edges import Edge
 from cadpanel.reference.model import RawPanel
-
-Array = NDArray[np.float64]
 
 # A face whose area is less than this part of its outline's length squared is a line.
 SLIVER = 1e-6

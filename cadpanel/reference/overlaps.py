@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import PanelError
-from cadpanel.geometry.polyline import cross, distances_to_curves, norm, unit
+from cadpanel.geometry.polyline import distances_to_curves
+from cadpanel.geometry.vectors import cross, norm, unit
 from cadpanel.reference.oriented_panel import Sheet
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # So many points of a panel's outline, of 64 a side, lie on a panel that it covers, or one of them by so many tolerances
 # inside: less may be a corner's overrun.
@@ -44,7 +42,7 @@ class _Loop:
     inwards: Array
     sides: int
 
-    def contains(self, points: Array) -> NDArray[np.bool_]:
+    def contains(self, points: Array) -> BoolArray:
         """Tell for (m, 3) points beside the outline whether they lie on the panel's side of where they are nearest.
 
         Where that is a point between two lines, both count alike: the sum of their ways inwards tells both at corners

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import PanelError
-from cadpanel.geometry.polyline import distances_to_curves, norm
+from cadpanel.geometry.polyline import distances_to_curves
+from cadpanel.geometry.vectors import norm
 from cadpanel.reference.oriented_panel import Sheet, curves
-
-Array = NDArray[np.float64]
 
 # Sides asked for around each side: itself, the one it may meet, and enough more to notice that there are too many.
 NEIGHBOURS = 4
@@ -103,7 +102,7 @@ def find_contacts(sheets: Sequence[Sheet], source: str, tolerance: float) -> tup
     )
 
 
-def _touching(lines: Array, owners: NDArray[np.intp], tolerance: float) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+def _touching(lines: Array, owners: IntArray, tolerance: float) -> tuple[IntArray, BoolArray]:
     """Find the pairs of sides that coincide.
 
     Args:
@@ -131,13 +130,13 @@ def _touching(lines: Array, owners: NDArray[np.intp], tolerance: float) -> tuple
     return pairs[coincide], against[coincide]
 
 
-def _near(first: Array, second: Array, tolerance: float) -> NDArray[np.bool_]:
+def _near(first: Array, second: Array, tolerance: float) -> BoolArray:
     """Tell for each pair of (m, 3) points whether they lie within the tolerance: (m,)."""
-    near: NDArray[np.bool_] = norm(first - second) <= tolerance
+    near: BoolArray = norm(first - second) <= tolerance
     return near
 
 
-def _coincide(lines: Array, pairs: NDArray[np.intp], against: NDArray[np.bool_], tolerance: float) -> NDArray[np.bool_]:
+def _coincide(lines: Array, pairs: IntArray, against: BoolArray, tolerance: float) -> BoolArray:
     """Tell for each of the (c, 2) pairs whether the two curves coincide over their whole length: (c,)."""
     first, second = lines[pairs[:, 0]], lines[pairs[:, 1]]
     opposite = np.where(against[:, None, None], second[:, ::-1], second)
@@ -152,7 +151,7 @@ def _coincide(lines: Array, pairs: NDArray[np.intp], against: NDArray[np.bool_],
     return coincide
 
 
-def _refuse_branches(pairs: NDArray[np.intp], owners: NDArray[np.intp], sheets: Sequence[Sheet], source: str) -> None:
+def _refuse_branches(pairs: IntArray, owners: IntArray, sheets: Sequence[Sheet], source: str) -> None:
     """Refuse a side that coincides with more than one other."""
     sides, counts = np.unique(pairs, return_counts=True)
     if not (counts > 1).any():

@@ -7,12 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.solver.levenberg_marquardt import Model, Stopping, levenberg_marquardt
 from cadpanel.solver.tolerance_weights import Hold
-
-Array = NDArray[np.float64]
 
 
 class Held(Protocol):

@@ -18,12 +18,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import BlockPattern, Normal
-
-Array = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 # Marquardt's scale of an unknown that no residual sees is 0; this share of the block's largest keeps the step finite.
 _LEAST_SCALE = 1e-9

@@ -10,9 +10,8 @@ becomes larger than the tolerance asks for.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
 
 # What cannot be held is given up here, before the weights drown the rest of the objective.
 MOST_WEIGHT = 1e5

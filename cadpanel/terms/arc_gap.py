@@ -11,19 +11,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
-from cadpanel.geometry.frames import dot
+from cadpanel.geometry.vectors import dot
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.tolerance_weights import Hold
-from cadpanel.terms.corner_gap import Placement
+from cadpanel.terms.placement import Placement
 from cadpanel.terms.rows import Rows, add_rows, booked_cost
 from cadpanel.terms.seams import SeamBatch, arc_patches, arc_places
 from cadpanel.terms.state import State, slopes
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)

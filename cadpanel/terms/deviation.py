@@ -11,18 +11,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.features.distance import assign, patch_distance, patch_distance_inner, patch_outer
 from cadpanel.features.layout import Group, Layout
-from cadpanel.features.walk import Rulings, Walk
+from cadpanel.features.rulings import Rulings, Walk
 from cadpanel.geometry.cone import INNER, plane_distance
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Panels worked on together: their samples and derivatives stay in the processor's cache.
 _CHUNK = 64

@@ -4,33 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.solver.blocks import Normal
-from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
-
-
-class Term(Protocol):
-    """One part of the objective: half the sum of squares of its residuals."""
-
-    def cost(self, state: State) -> Array:
-        """(panels,) the term's cost, each residual booked on one of its panels."""
-        ...
-
-    def add_to(self, normal: Normal, state: State) -> Array:
-        """Add gradient and J^T J to the model; returns the cost as above."""
-        ...
-
-    def rows(self, state: State) -> list[Rows]:
-        """The same as plain residual rows with their Jacobians, for checks and for other solvers."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,13 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.features.panel_edges import ARC_SHARES, Edge
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Where on a straight edge points are held to a curved one, as shares of its length.
 _STRAIGHT_SHARES = (1 / 4, 1 / 2, 3 / 4)
@@ -37,7 +34,7 @@ class SeamBatch:
     panels: IntArray
     edges: IntArray
     pair: IntArray
-    reversed: NDArray[np.bool_]
+    reversed: BoolArray
     corners: IntArray
     curved: tuple[tuple[bool, ...], tuple[bool, ...]]
     alike: bool
@@ -63,7 +60,7 @@ class Movers:
 
 
 def batches(
-    layout: Layout, panels: IntArray, edges: IntArray, backwards: NDArray[np.bool_], pair: IntArray
+    layout: Layout, panels: IntArray, edges: IntArray, backwards: BoolArray, pair: IntArray
 ) -> tuple[SeamBatch, ...]:
     """Group seams that are alike.
 

@@ -7,14 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.features.catalogue import PanelFeature
+from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
-from cadpanel.features.walk import Points, Walk
+from cadpanel.features.rulings import PanelFeature, Points, Walk
 from cadpanel.terms.surfaces import CutPlanes, Surfaces, cut_planes_of, surfaces_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
 from cadpanel.features.distance import patch_outer
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
-from cadpanel.features.walk import Walk, cut_plane_rates, cut_planes
+from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
-from cadpanel.geometry.frames import dot
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
-BoolArray = NDArray[np.bool_]
+from cadpanel.geometry.vectors import dot
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from OCP.Geom import Geom_Surface
 from OCP.TopoDS import TopoDS_Face
 
 import cadpanel as cp
-from cadpanel.brep.files.model import compound_of
+from cadpanel.brep.kernel.shapes import compound_of
 from fixtures.grids import dome
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip, kernel_face, sheet_of

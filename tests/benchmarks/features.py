@@ -17,7 +17,7 @@ import typer
 
 import cadpanel as cp
 from cadpanel.features.catalogue import CATALOGUE, feature
-from cadpanel.fitting.methods.concurrent import fit_local
+from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.shapes import panel_shapes
 from fixtures.grids import dome, grid, honeycomb, vault

@@ -17,11 +17,12 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.sparse import coo_array, csr_array, vstack
 
-from cadpanel.fitting.methods.concurrent import fit_local, weighted_objective
+from cadpanel.arrays import Array
+from cadpanel.fitting.methods.local import fit_local
+from cadpanel.fitting.methods.weighted import weighted_objective
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings, Weights
@@ -29,8 +30,6 @@ from cadpanel.solver.levenberg_marquardt import Solution, Stopping, levenberg_ma
 from cadpanel.terms.rows import Rows
 from fixtures.arrays import reference
 from tests.benchmarks.strips import long_lip
-
-Array = NDArray[np.float64]
 
 app = typer.Typer(add_completion=False)
 

@@ -9,7 +9,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere, BR
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.faces.sampling import sample_faces
-from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from tests.brep.test_drawn_curves import LENGTH, WAVE, WIDTH, cut_points, plate, raw, wave
 from tests.brep.test_network import curve

@@ -16,7 +16,7 @@ from OCP.BRepPrimAPI import (
 from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError, SettingsError
 from tests.brep.test_subdivide import reference_of

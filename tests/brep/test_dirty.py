@@ -12,7 +12,8 @@ from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.model import Label, compound_of, shapes_of
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.skin.face_cleanup import find_doubles
 from cadpanel.errors import CadpanelError

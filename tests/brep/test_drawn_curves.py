@@ -12,13 +12,14 @@ from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.curves import pcurve_fit
 from cadpanel.brep.curves.drawn_curve import sampled
-from cadpanel.brep.curves.pieces import CLOSE
 from cadpanel.brep.curves.projection import land_curves
 from cadpanel.brep.cutting.by_network import cut_network
 from cadpanel.brep.cutting.raw_panels import raw_panels
 from cadpanel.brep.faces.area import enclosed
 from cadpanel.brep.files.face_choice import select_faces
-from cadpanel.brep.files.model import Label, Model, ModelCurve, Part, compound_of, shapes_of
+from cadpanel.brep.files.model import Label, Model, ModelCurve, Part
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
+from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces

@@ -10,9 +10,10 @@ from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.curves.drawn_curve import sampled
-from cadpanel.brep.curves.pieces import CLOSE
-from cadpanel.brep.curves.polyline_joining import polyline_edge
-from cadpanel.brep.files.model import Label, ModelCurve, compound_of, shapes_of
+from cadpanel.brep.files.model import Label, ModelCurve
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
+from cadpanel.brep.kernel.splines import polyline_edge
+from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings

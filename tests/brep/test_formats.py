@@ -16,8 +16,9 @@ from cadpanel.brep.files import rhino
 from cadpanel.brep.files.catalogue import FORMATS, format_of
 from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.model import Label, Model, Part, compound_of, packed, shapes_of, unpacked
+from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.isolation import client
+from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of, unpacked
 from cadpanel.errors import ReferenceFileError
 from tests.model_files import strip_faces, write_labelled, write_shape
 

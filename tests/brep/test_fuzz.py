@@ -13,8 +13,9 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from cadpanel.brep.cutting.by_mesh import load_mesh
 from cadpanel.brep.files.catalogue import FORMATS
 from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.model import Label, compound_of
+from cadpanel.brep.files.model import Label
 from cadpanel.brep.isolation import client
+from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings

@@ -5,7 +5,7 @@ import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.gp import gp_Pln, gp_Pnt
 
-from cadpanel.brep.files.model import compound_of
+from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError

@@ -12,7 +12,7 @@ from OCP.TopAbs import TopAbs_VERTEX
 from OCP.TopoDS import TopoDS
 
 import cadpanel as cp
-from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from tests.brep.test_subdivide import EQUAL, cut, model_of, panels_of

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from cadpanel.brep.files.model import Label, compound_of
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_reference
 from cadpanel.errors import PanelError
 from tests.brep.test_dirty import creased_face

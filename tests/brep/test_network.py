@@ -11,7 +11,7 @@ from OCP.gp import gp_Pln, gp_Pnt
 from OCP.TColgp import TColgp_Array1OfPnt
 
 from cadpanel.brep.cutting.panel_names import Link, place_names
-from cadpanel.brep.files.model import compound_of
+from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError

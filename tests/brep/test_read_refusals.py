@@ -19,7 +19,7 @@ from OCP.TopExp import TopExp_Explorer
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.survey import survey
 from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
 from tests.reference_shapes import Lip, kernel_face, kernel_lip, write_products

@@ -17,8 +17,8 @@ from cadpanel.brep.faces.pcurve_repair import sharpen_trims
 from cadpanel.brep.files import opennurbs
 from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.model import shapes_of
-from cadpanel.brep.files.units import scaled
+from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError

@@ -10,7 +10,7 @@ from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.reference.settings import ReferenceSettings

@@ -12,7 +12,7 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Trsf
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopLoc import TopLoc_Location
 
-from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from tests.brep.test_subdivide import assert_covers, middle, model_of, panels_of, reference_of

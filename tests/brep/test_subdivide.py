@@ -24,7 +24,8 @@ from OCP.TopAbs import TopAbs_FACE
 from cadpanel.brep.cutting.ways import cut_surfaces
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.face_choice import select_faces
-from cadpanel.brep.files.model import Label, Model, Part, compound_of, shapes_of
+from cadpanel.brep.files.model import Label, Model, Part
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces

@@ -10,7 +10,8 @@ from OCP.gp import gp_Ax3, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_FACE
 
 import cadpanel as cp
-from cadpanel.brep.files.model import Label, compound_of, shapes_of
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.skin.lips import lips_of
 from cadpanel.brep.survey import survey
 from cadpanel.reference.settings import ReferenceSettings

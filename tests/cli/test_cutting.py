@@ -6,7 +6,8 @@ import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
 from OCP.gp import gp_Pln, gp_Pnt
 
-from cadpanel.brep.files.model import Label, compound_of
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.kernel.shapes import compound_of
 from tests.cli.conftest import Run
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip

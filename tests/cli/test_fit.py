@@ -21,12 +21,13 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
+from cadpanel.arrays import Array
 from cadpanel.delivery.outputs.step_files import write_solids
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.sheets import PanelSheet
 from tests.cli.conftest import Run
-from tests.reference_shapes import Array, Lip, kernel_face, kernel_lip, strip, write_products
+from tests.reference_shapes import Lip, kernel_face, kernel_lip, strip, write_products
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cadpanel.arrays import Array
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.names import PANELS, REPORT, SKINS
+from cadpanel.delivery.folder import PANELS, REPORT, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.from_fit import panel_records
 from cadpanel.delivery.records.from_shape import patch_models
@@ -19,8 +20,8 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
-from cadpanel.fitting.result import fit
-from cadpanel.geometry.shape import Array, ConePatch, PanelShape
+from cadpanel.fitting.run import fit
+from cadpanel.geometry.shape import ConePatch, PanelShape
 from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel

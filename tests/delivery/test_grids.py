@@ -11,11 +11,12 @@ import pytest
 
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.names import REPORT
+from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ReportModel, read_report, write_report
 from cadpanel.delivery.verify import verify
-from cadpanel.fitting.result import FitResult, fit
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from tests.grids import dome, write_grid, write_honeycomb
 

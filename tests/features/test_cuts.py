@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Patch, Plane
-from cadpanel.features.walk import cut_planes
-from cadpanel.geometry.frames import cross, dot
+from cadpanel.geometry.vectors import cross, dot
 from tests.chains import random_values
 
 ROUNDING = 1e-12

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.walk import cut_plane_rates, cut_planes
+from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
 from tests.chains import CHAINS, FEATURES, random_values, slopes
 from tests.features.test_every_feature import rulings_of
 

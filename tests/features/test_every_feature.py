@@ -7,10 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
-from cadpanel.features.walk import Rulings, cut_planes, end_points
+from cadpanel.features.rulings import Rulings
+from cadpanel.features.walk import end_points
 from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
-from cadpanel.geometry.frames import cross, dot
+from cadpanel.geometry.vectors import cross, dot
 from tests.chains import CHAINS, FEATURES, random_values, slopes
 
 # Lengths in panel lengths, angles in radians.

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.catalogue import PanelFeature, feature
+from cadpanel.features.catalogue import feature
 from cadpanel.features.polygon import Polygon
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.shapes import edge_curves, panel_shapes
 from cadpanel.geometry.shape import ConePatch, PanelShape, PolygonShape, edge_corners
 from tests.chains import CHAINS, FEATURES, POLYGONS, made_problem, mixed_unknowns, problem_of, random_unknowns

@@ -6,7 +6,7 @@ import pytest
 from cadpanel.features.catalogue import feature
 from cadpanel.fitting import feature_choice
 from cadpanel.fitting.feature_choice import CHEAPEST_FIRST, Choice
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import cadpanel as cp
 from cadpanel.fitting.bends.asked import Blend, blends_of
 from cadpanel.fitting.bends.taken import missed_blend, taken
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.shape import ConePatch

@@ -5,7 +5,7 @@ import pytest
 
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Plane
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.shape import ConePatch
 from fixtures.arrays import reference as sampled_lip

@@ -5,7 +5,7 @@ import pytest
 
 from cadpanel.features.catalogue import feature, polygon
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.methods.concurrent import fit_local
+from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings

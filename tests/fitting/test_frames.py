@@ -9,7 +9,8 @@ from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.start.chains import start
 from cadpanel.fitting.start.frames import reframe
-from cadpanel.geometry.frames import cayley, cross
+from cadpanel.geometry.frames import cayley
+from cadpanel.geometry.vectors import cross
 from tests.instances import NAMES, random_polygon, random_shapes
 from tests.known_panels import alone, moved
 

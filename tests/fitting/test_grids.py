@@ -12,9 +12,11 @@ import pytest
 from cadpanel.brep.read import read_reference
 from cadpanel.features.catalogue import feature, polygon
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.methods.concurrent import fit_concurrent, fit_local
+from cadpanel.fitting.measures.verdict import keeps_limits
+from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
-from cadpanel.fitting.result import fit, keeps_limits
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.chain_checks import check_buildable

@@ -6,8 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cadpanel.fitting.methods.concurrent import fit_concurrent, fit_local, fit_two_stage
-from cadpanel.fitting.result import fit
+from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.local import fit_local
+from cadpanel.fitting.methods.two_stage import fit_two_stage
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import ConePatch

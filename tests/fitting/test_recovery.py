@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.methods.concurrent import fit_local
+from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import ConePatch

@@ -16,7 +16,8 @@ from cadpanel.geometry.cone import (
     plane_distance,
     plane_inner,
 )
-from cadpanel.geometry.frames import cross, dot, point_velocity, rotate_about
+from cadpanel.geometry.frames import point_velocity, rotate_about
+from cadpanel.geometry.vectors import cross, dot
 
 ROUNDING = 1e-12
 STEP = 1e-6

@@ -5,15 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.frames import (
-    cayley,
-    cayley_rates,
-    cross,
-    dot,
-    point_velocity,
-    rotate_about,
-    rotation_twist,
-)
+from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity, rotate_about, rotation_twist
+from cadpanel.geometry.vectors import cross, dot
 
 ROUNDING = 1e-13
 STEP = 1e-6

@@ -6,13 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.levenberg_marquardt import Bounds
 from cadpanel.solver.tolerance_weights import Hold
 
-Array = NDArray[np.float64]
 Residual = Callable[[Array], Array]
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.optimize import NonlinearConstraint, minimize
 
+from cadpanel.arrays import Array
 from cadpanel.solver.constrained import Schedule, hold_tolerances
 from cadpanel.solver.tolerance_weights import Hold
 from tests.solver.models import HeldChain, HeldPoints
@@ -71,7 +71,7 @@ def test_a_held_chain_reaches_the_constrained_minimum(seed, radius):
     model = HeldChain(targets, radius)
     found = solve(model, targets.copy())
 
-    def cost(x: NDArray[np.float64]) -> float:
+    def cost(x: Array) -> float:
         return model.free_cost(x.reshape(4, 2))
 
     limits = NonlinearConstraint(lambda x: np.sum(np.diff(x.reshape(4, 2), axis=0) ** 2, axis=1), -np.inf, radius**2)

@@ -6,12 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from cadpanel.features.catalogue import PanelFeature, feature
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.features.catalogue import feature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
 from cadpanel.features.polygon import Polygon
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.blocks import Normal
@@ -20,13 +22,11 @@ from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.edge_gap import MixedGap
 from cadpanel.terms.limits.corner_drift import DriftLimit, Limited, Outline
-from cadpanel.terms.rows import Rows, Term
+from cadpanel.terms.rows import Rows
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
+from cadpanel.terms.term import Term
 from tests.chains import FEATURES, made_problem, mixed_unknowns, problem_of
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 STEP = 1e-6
 # Central differences with this step, relative to the largest derivative.
@@ -222,7 +222,7 @@ def with_seams(problem: Problem, panels: ArrayLike, edges: ArrayLike, backwards:
     return replace(problem, seams=found, pairs=pairs)
 
 
-def seams_of(problem: Problem) -> tuple[IntArray, IntArray, NDArray[np.bool_]]:
+def seams_of(problem: Problem) -> tuple[IntArray, IntArray, BoolArray]:
     """Panels, edges and whether they run against each other, of all seams in their order."""
     order = np.argsort(np.concatenate([batch.index for batch in problem.seams]))
     panels, edges = (np.concatenate([getattr(b, what) for b in problem.seams])[order] for what in ("panels", "edges"))

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.walk import cut_planes
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.geometry.frames import dot
+from cadpanel.geometry.vectors import dot
 from cadpanel.terms.limits.corner_drift import Limited
 from tests.chains import CHAINS, POLYGONS
 from tests.terms.models import Case, case_of, cost, mixed_case

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.features.catalogue import feature
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone
 from cadpanel.features.polygon import Polygon
-from cadpanel.features.walk import cut_planes
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import PanelShape

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.distance import assign, patch_distance_inner
-from cadpanel.features.walk import cut_planes
 from cadpanel.terms.surfaces import cut_planes_of
 from tests.chains import FEATURES, made_problem, mixed_unknowns
 from tests.terms.models import case_of, mixed_case

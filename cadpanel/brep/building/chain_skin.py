@@ -10,12 +10,13 @@ from OCP.BRep import BRep_Builder
 from OCP.GeomAbs import GeomAbs_G1
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Vertex
 
+from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.edges import shell_of
 from cadpanel.brep.building.polygon_sheet import polygon_skin
 from cadpanel.geometry.chain_checks import check_skin
 from cadpanel.geometry.cone_sections import EllipticSection, axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 from cadpanel.geometry.slender_cones import straighten
 
 _BUILDER = BRep_Builder()

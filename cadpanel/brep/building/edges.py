@@ -13,10 +13,10 @@ from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
 
+from cadpanel.arrays import Array
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.geometry.cone_sections import EllipticSection
-from cadpanel.geometry.frames import cross
-from cadpanel.geometry.shape import Array
+from cadpanel.geometry.vectors import cross
 
 _BUILDER = BRep_Builder()
 

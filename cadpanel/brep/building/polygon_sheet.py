@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex
 
+from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
-from cadpanel.geometry.shape import Array, PolygonShape
+from cadpanel.geometry.shape import PolygonShape
 
 
 class _Level:

@@ -10,12 +10,13 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 
+from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
 from cadpanel.brep.building.edges import shell_of
 from cadpanel.brep.building.polygon_sheet import polygon_faces
 from cadpanel.geometry.chain_checks import SkinSide, check_buildable, other_face
-from cadpanel.geometry.shape import AnyShape, Array, PanelShape, PolygonShape
+from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
 from cadpanel.geometry.slender_cones import Straightened, straighten
 
 _BUILDER = BRep_Builder()

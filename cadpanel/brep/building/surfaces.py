@@ -14,9 +14,9 @@ from OCP.TColgp import TColgp_Array1OfPnt2d
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from scipy.interpolate import BSpline
 
+from cadpanel.arrays import Array
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
-from cadpanel.geometry.shape import Array
 
 ARC_DEGREE = 11
 """Degree of a parameter curve on a cone; no more, as some readers stop at 11."""

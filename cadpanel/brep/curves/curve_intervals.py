@@ -6,17 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.curves.pcurve_fit import Stretch
-from cadpanel.brep.curves.pieces import CLOSE, Piece
+from cadpanel.brep.curves.pieces import Piece
 from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.closest_points import Feet, Search
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.faces.inside_test import Trim
-from cadpanel.geometry.polyline import norm
-
-Array = NDArray[np.float64]
+from cadpanel.brep.kernel.tolerances import CLOSE
+from cadpanel.geometry.vectors import norm
 
 # A jump of more than this part of the parameter range goes over the seam of a closed surface.
 JUMP = 0.5
@@ -58,7 +57,7 @@ class Run:
 
 
 def runs_over(
-    patch: Patch, index: int, piece: Piece, feet: Feet, start: int, near: NDArray[np.bool_], tolerance: float
+    patch: Patch, index: int, piece: Piece, feet: Feet, start: int, near: BoolArray, tolerance: float
 ) -> list[Run]:
     """The runs of those of a piece's points that are near a patch over it, and those along its border.
 
@@ -74,7 +73,7 @@ def runs_over(
     ]
 
 
-def kept_on_face(runs: Sequence[Run], trim: Trim, enclosed: NDArray[np.bool_], tolerance: float) -> list[Run]:
+def kept_on_face(runs: Sequence[Run], trim: Trim, enclosed: BoolArray, tolerance: float) -> list[Run]:
     """Runs without what lies clearly beyond the border of the face; one of which nothing is left is kept out.
 
     Args:
@@ -96,13 +95,13 @@ def kept_on_face(runs: Sequence[Run], trim: Trim, enclosed: NDArray[np.bool_], t
     return found
 
 
-def _stretches(places: NDArray[np.intp]) -> list[tuple[int, int]]:
+def _stretches(places: IntArray) -> list[tuple[int, int]]:
     """First and last of each stretch of rising places that follow each other."""
     parts = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
     return [(int(part[0]), int(part[-1])) for part in parts if len(part)]
 
 
-def _parted(chosen: NDArray[np.bool_], parameters: Array, patch: Patch) -> list[tuple[int, int]]:
+def _parted(chosen: BoolArray, parameters: Array, patch: Patch) -> list[tuple[int, int]]:
     """First and last index of each run of chosen points, parted where the parameters jump over a seam."""
     places = np.flatnonzero(chosen)
     if not len(places):

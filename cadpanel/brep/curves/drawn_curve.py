@@ -7,20 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS, TopoDS_Edge
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.pieces import Piece, piece_through, smooth_pieces
 from cadpanel.brep.curves.polyline_joining import joined
 from cadpanel.brep.curves.polyline_smoothing import FACET
 from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Model, ModelCurve
-from cadpanel.brep.files.units import shifted
+from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.errors import ReferenceFileError
-
-Array = NDArray[np.float64]
 
 # How closely one curve must begin where another one ends to follow it, as a part of the whole length.
 FOLLOWS = 1e-3

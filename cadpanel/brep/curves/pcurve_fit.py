@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepLib import BRepLib
 from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import BSpline, make_interp_spline
 
-from cadpanel.brep.curves.pieces import CLOSE, Piece
+from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.curves.pieces import Piece
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.face_patch import Patch, geometry
-from cadpanel.brep.splitting.split_by_pcurves import DEGREE, spline_curve
-from cadpanel.geometry.polyline import arc_length, norm, unit
-
-Array = NDArray[np.float64]
+from cadpanel.brep.kernel.splines import DEGREE, spline_curve
+from cadpanel.brep.kernel.tolerances import CLOSE
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import norm, unit
 
 # Numbers of even points that are tried in turn, until the spline through them follows the one through all points.
 COUNTS = (9, 17, 33, 65, 129)
@@ -118,7 +118,7 @@ def _courses(patch: Patch, stretches: Sequence[Stretch]) -> list[_Course]:
     return found
 
 
-def _deviations(patch: Patch, course: _Course, feet: Array, segments: NDArray[np.intp]) -> Array:
+def _deviations(patch: Patch, course: _Course, feet: Array, segments: IntArray) -> Array:
     """How far the spline passes beside (m, 2) feet in the middles of (m,) segments, mm."""
     starts, ends = course.points[segments], course.points[segments + 1]
     middles = patch.points(feet)

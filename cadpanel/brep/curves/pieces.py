@@ -8,7 +8,6 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_C1
 from OCP.gp import gp_Pnt, gp_Vec
@@ -16,14 +15,12 @@ from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import make_interp_spline
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.polyline_smoothing import FACET, SmoothCurve, corners, missed, smooth_curve
-from cadpanel.brep.splitting.split_by_pcurves import DEGREE
-from cadpanel.geometry.polyline import norm, unit
+from cadpanel.brep.kernel.splines import DEGREE
+from cadpanel.brep.kernel.tolerances import CLOSE
+from cadpanel.geometry.vectors import norm, unit
 
-Array = NDArray[np.float64]
-
-# How closely a cut follows what was drawn, mm.
-CLOSE = 1e-3
 # Segments along a whole curve at first, and the fewest along a piece and along a span between two of its knots.
 SEGMENTS = 256
 FEWEST_SEGMENTS = 4

@@ -9,22 +9,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-from OCP.Geom import Geom_BSplineCurve
 from OCP.GeomAbs import GeomAbs_BezierCurve, GeomAbs_BSplineCurve, GeomAbs_Line
-from OCP.gp import gp_Pnt
-from OCP.TColgp import TColgp_Array1OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.polyline_smoothing import missed
 from cadpanel.brep.files.model import ModelCurve
-from cadpanel.geometry.polyline import norm, unit
-
-Array = NDArray[np.float64]
+from cadpanel.brep.kernel.splines import polyline_edge
+from cadpanel.geometry.vectors import norm, unit
 
 # How closely an edge must begin where the one before it ends, mm.
 MEET = 1e-3
@@ -55,18 +49,6 @@ def joined(curves: Sequence[ModelCurve], most: float) -> list[tuple[int, ModelCu
         found.append((number, curve))
     _finish(found, line)
     return found
-
-
-def polyline_edge(points: Sequence[Array]) -> TopoDS_Edge:
-    """The edge along a polyline of n >= 2 points (3,), mm, as a spline of degree 1 by number of the point."""
-    count = len(points)
-    poles = TColgp_Array1OfPnt(1, count)
-    knots, multiplicities = TColStd_Array1OfReal(1, count), TColStd_Array1OfInteger(1, count)
-    for place, point in enumerate(points, start=1):
-        poles.SetValue(place, gp_Pnt(*point.tolist()))
-        knots.SetValue(place, float(place))
-        multiplicities.SetValue(place, 2 if place in (1, count) else 1)
-    return BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, knots, multiplicities, 1)).Edge()
 
 
 def _segment(edge: TopoDS_Edge) -> tuple[Array, Array] | None:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import BSpline, splprep
 
-from cadpanel.geometry.polyline import arc_length, norm, unit
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import norm, unit
 
-Array = NDArray[np.float64]
 _Fitted = tuple[Array, list[Array], int]
 
 # A turn between two segments is a facet where the smooth curve past it misses them by no more than this, mm: a tenth
@@ -50,7 +50,7 @@ def missed(before: Array, after: Array, lengths: Array) -> Array:
     return np.asarray(turns * np.minimum(lengths[:-1], lengths[1:]) / 8.0)
 
 
-def corners(points: Array, turns: NDArray[np.intp]) -> NDArray[np.bool_]:
+def corners(points: Array, turns: IntArray) -> BoolArray:
     """Tell which turns are corners once they are looked at over a millimetre, one for each corner.
 
     Args:
@@ -83,7 +83,7 @@ class SmoothCurve:
     off: float
 
 
-def smooth_curve(points: Array, vertices: NDArray[np.intp]) -> SmoothCurve | None:
+def smooth_curve(points: Array, vertices: IntArray) -> SmoothCurve | None:
     """The curve that a fine polyline stands for, with no more knots than its own error asks for.
 
     Args:

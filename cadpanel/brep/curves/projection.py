@@ -6,24 +6,23 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Edge
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.curve_intervals import kept_on_face, runs_over, stretches_of
 from cadpanel.brep.curves.drawn_curve import Curve
 from cadpanel.brep.curves.pcurve_fit import Stretch, lay
-from cadpanel.brep.curves.pieces import CLOSE, Piece, piece_through
+from cadpanel.brep.curves.pieces import Piece, piece_through
 from cadpanel.brep.curves.reach import reach_of
 from cadpanel.brep.curves.self_crossing import uncrossed
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.inside_test import Trim
+from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.face_cleanup import SkinFace
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import unit
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.vectors import unit
 
 # A curve lies nearer to another face mostly where that holds for more than this part of its points.
 MOSTLY = 0.5

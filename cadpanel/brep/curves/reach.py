@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.skin.adjacency import Surface
-
-Array = NDArray[np.float64]
 
 # A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
 NEAR_PART = 0.01

@@ -6,13 +6,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.curves.pcurve_fit import SAME, Stretch
 from cadpanel.brep.faces.face_patch import Patch
-from cadpanel.geometry.polyline import arc_length, norm, side_of
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import norm, side_of
 
 # Segments in a row that share a box, by which those far from each other are told apart; and pairs of such rows whose
 # segments are compared at once.
@@ -51,7 +50,7 @@ def _drawn_on(line: Array, reached: Array, length: float) -> Array:
     return longer
 
 
-def crossings(line: Array) -> NDArray[np.intp]:
+def crossings(line: Array) -> IntArray:
     """Pairs of segments of a line in the plane that meet without following each other.
 
     Args:
@@ -82,7 +81,7 @@ def crossings(line: Array) -> NDArray[np.intp]:
     return np.asarray(pairs[pairs[:, 1] - pairs[:, 0] > 1], dtype=np.intp)
 
 
-def _meet(line: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> NDArray[np.bool_]:
+def _meet(line: Array, first: IntArray, second: IntArray) -> BoolArray:
     """Whether segments of a line meet, by the numbers of those (..., k) compared."""
     a, b, c, d = line[first], line[first + 1], line[second], line[second + 1]
     apart = (np.maximum(a, b) < np.minimum(c, d)) | (np.maximum(c, d) < np.minimum(a, b))
@@ -90,7 +89,7 @@ def _meet(line: Array, first: NDArray[np.intp], second: NDArray[np.intp]) -> NDA
     return np.asarray(crossed & ~apart.any(axis=-1), dtype=np.bool_)
 
 
-def _cuts(pairs: NDArray[np.intp]) -> list[int]:
+def _cuts(pairs: IntArray) -> list[int]:
     """The fewest points at which to part a line so that no part has both segments of a pair, each amid its loops."""
     cuts: list[int] = []
     first, last = 0, -1

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
@@ -13,6 +12,7 @@ from OCP.Geom2d import Geom2d_TrimmedCurve
 from OCP.gp import gp_Pnt2d
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
+from cadpanel.arrays import Array
 from cadpanel.brep.cutting.cut_panel import CutPanel, grid_name
 from cadpanel.brep.cutting.smallest_panel import require_room
 from cadpanel.brep.faces.face_patch import CLOSED, Patch, equal_parts, geometry, lengths_along, rectangle
@@ -21,8 +21,6 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import By
-
-Array = NDArray[np.float64]
 
 # Lines across the surface over which lengths are averaged.
 AVERAGED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels
 from cadpanel.brep.cutting.lip_band import lip_band
 from cadpanel.brep.cutting.smallest_panel import require_room
@@ -14,9 +14,8 @@ from cadpanel.brep.skin.ring import find_ring
 from cadpanel.brep.skin.split_by_planes import cut_by_planes
 from cadpanel.brep.skin.strip import find_strip
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import arc_length, norm
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import norm
 
 # Points of a long edge by which its length is measured.
 EDGE_POINTS = 257

@@ -8,10 +8,10 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.drawn_curve import Curve
 from cadpanel.brep.curves.pieces import Piece
 from cadpanel.brep.curves.reach import far_off, sags
@@ -24,8 +24,6 @@ from cadpanel.brep.files.units import no_unit
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.errors import ReferenceFileError
-
-Array = NDArray[np.float64]
 
 # An inner edge that ends on the mesh's border is drawn on by this part of its length, so that it surely meets the
 # outline of the surface; what lies beyond is not projected.

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_INTERNAL, TopAbs_REVERSED
@@ -15,19 +14,18 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.drawn_curve import Curve
 from cadpanel.brep.curves.projection import Landing
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.cutting.edges_across_gaps import bridges, points_along
 from cadpanel.brep.cutting.panel_names import Link, place_names
-from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import Pieces, area_of, length_of
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import cross, norm
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.vectors import cross, norm
 
 # An offset of more than this is worth a note, mm.
 WORTH_A_NOTE = 0.01

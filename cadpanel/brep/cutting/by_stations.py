@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.drawn_curve import CurveFile, chain
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels
 from cadpanel.brep.skin.adjacency import Surface
+from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.skin.split_by_planes import cut_by_planes
-from cadpanel.brep.skin.strip import MIDDLE_POINTS, STEP, Cuts, find_strip
+from cadpanel.brep.skin.strip import MIDDLE_POINTS, STEP, find_strip
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.geometry.polyline import arc_length, interpolate, norm, unit
+from cadpanel.geometry.polyline import arc_length, interpolate
+from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.assemble import LARGEST_TOLERANCE
-
-Array = NDArray[np.float64]
 
 # How far beyond the surface's farthest point from the spine a plane reaches, a ratio.
 BEYOND = 1.05

@@ -6,14 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Face
 
-from cadpanel.brep.files.model import compound_of
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.brep.kernel.shapes import compound_of
 
 FEWEST_DIGITS = 2
 

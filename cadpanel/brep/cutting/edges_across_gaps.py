@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.TopoDS import TopoDS_Edge
 from scipy.spatial import cKDTree
 
-from cadpanel.geometry.polyline import arc_length, distances_to_polylines, norm
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.geometry.polyline import arc_length, distances_to_polylines
+from cadpanel.geometry.vectors import norm
 
 # Points along an edge.
 POINTS = 17

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.curves.projection import land
 from cadpanel.brep.faces.face_patch import rectangle
 from cadpanel.brep.skin.adjacency import Surface, surfaces_of
@@ -19,9 +19,8 @@ from cadpanel.brep.skin.lips import Lip, follow_lip, lips_midway
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import Pieces
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import arc_length, cross, norm, unit
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import cross, norm, unit
 
 # Parts of the strip's length at which the lip is looked for, close to both ends, and by how much the band's borders are
 # drawn on beyond them.

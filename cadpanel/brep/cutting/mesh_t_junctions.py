@@ -6,13 +6,12 @@ from collections import Counter
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.cutting.mesh_weld import Faces
-from cadpanel.geometry.polyline import norm
+from cadpanel.geometry.vectors import norm
 
-Array = NDArray[np.float64]
 Edge = tuple[int, int]
 
 # How far from an edge a corner may lie to be on it, as a part of the edge's length: over a curved surface the edge is a

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
+
 Faces = tuple[tuple[int, ...], ...]
 
 
-def welded(corners: NDArray[np.float64], faces: Sequence[Sequence[int]], tolerance: float) -> tuple[Faces, int]:
+def welded(corners: Array, faces: Sequence[Sequence[int]], tolerance: float) -> tuple[Faces, int]:
     """Faces that share the corners which coincide, and how many corners gave way to an earlier one.
 
     The corners keep their numbers; of those that coincide the first counts. A face loses a corner that coincides with

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.cutting.cut_panel import along_name, grid_name
-from cadpanel.geometry.polyline import unit
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.vectors import unit
 
 # Neighbours whose directions differ by less than about 45 degrees from a way along the grid lie on that way.
 ALONG = 0.7
@@ -97,7 +95,7 @@ def _chain(count: int, joined: dict[int, dict[int, Array]], along: Array) -> lis
         seen.add(onward[0])
 
 
-def _lattice(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -> NDArray[np.intp] | None:
+def _lattice(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -> IntArray | None:
     """(n, 2) row and column of each panel, from 0, or None where stepping from one to the next contradicts itself."""
     found = _first(middles, joined, axes)
     if found is None:
@@ -138,7 +136,7 @@ def _first(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -> 
     return None
 
 
-def _ordered(places: NDArray[np.intp], middles: Array) -> NDArray[np.intp]:
+def _ordered(places: IntArray, middles: Array) -> IntArray:
     """Rows and columns from 0, growing along the axis of space that each follows most."""
     offsets = middles - middles.mean(axis=0)
     ordered = places - places.min(axis=0)

@@ -18,13 +18,14 @@ from cadpanel.brep.faces.sampling import sample_panels
 from cadpanel.brep.files.catalogue import checked_format_of
 from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.loading import far_origin, load_model, origin_note
-from cadpanel.brep.files.model import Model, compound_of
+from cadpanel.brep.files.model import Model, NamedShape
 from cadpanel.brep.files.names import unique_names
+from cadpanel.brep.files.packing import PackedProducts
 from cadpanel.brep.files.step import STEP
-from cadpanel.brep.files.step_products import NamedShape
-from cadpanel.brep.files.units import refuse_given, shifted, unit_missing
+from cadpanel.brep.files.units import refuse_given, unit_missing
 from cadpanel.brep.isolation.client import read_guarded
-from cadpanel.brep.server import PackedProducts
+from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
 from cadpanel.brep.skin.panel_cleanup import gap_notes, mend_panels

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch
-from cadpanel.geometry.polyline import cross, norm
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.brep.faces.surface_batch import SurfaceBatch
+from cadpanel.geometry.vectors import cross, norm
 
 # Places across a face at which chords are measured.
 ACROSS = 5
@@ -28,7 +26,7 @@ def even_lines(faces: int, steps: int) -> tuple[Array, Array]:
     return np.tile(np.linspace(0.0, 1.0, steps + 1), (faces, 1)), np.tile(np.linspace(0.0, 1.0, steps + 1), (faces, 1))
 
 
-def are_uneven(measured: Strides, ratio: float) -> NDArray[np.bool_]:
+def are_uneven(measured: Strides, ratio: float) -> BoolArray:
     """(F,) whether the steps of each face differ in length by more than a factor."""
     return np.asarray(np.any([steps.max(axis=1) > ratio * steps.min(axis=1) for steps in measured.speeds], axis=0))
 
@@ -48,7 +46,7 @@ def laid_anew(lines: Array, steps: Array) -> Array:
     return np.array(found)
 
 
-def measure_strides(surfaces: SurfaceBatch, faces: Indices, bounds: Array, lines: tuple[Array, Array]) -> Strides:
+def measure_strides(surfaces: SurfaceBatch, faces: IntArray, bounds: Array, lines: tuple[Array, Array]) -> Strides:
     """Measure whole parameter ranges of f faces by the middles between (f, k + 1) lines each way."""
     middles = [0.5 * (own[:, :-1] + own[:, 1:]) for own in lines]
     count = middles[0].shape[1]
@@ -62,7 +60,7 @@ def measure_strides(surfaces: SurfaceBatch, faces: Indices, bounds: Array, lines
     return Strides((speeds_u, speeds_v), np.einsum("fuv,fu,fv->f", densities, steps_u, steps_v))
 
 
-def measure_chords(surfaces: SurfaceBatch, faces: Indices, bounds: Array, lines: tuple[Array, Array]) -> Strides:
+def measure_chords(surfaces: SurfaceBatch, faces: IntArray, bounds: Array, lines: tuple[Array, Array]) -> Strides:
     """The same, with lengths as the mean distance of points on neighbouring lines.
 
     That is a little short where a face bends, but where the speed grows without bounds at a border, the speed in the

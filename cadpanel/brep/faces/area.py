@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import (
     GeomAbs_BSplineCurve,
@@ -24,11 +23,11 @@ from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
-from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch
-from cadpanel.brep.files.model import shapes_of
-from cadpanel.geometry.polyline import cross, norm
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.faces.surface_batch import SurfaceBatch
+from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.splines import breaks_of, spans_of
+from cadpanel.geometry.vectors import cross, norm
 
 # Gauss points along each span of a border: as many as the degree of a spline, for which a plane comes out exactly, and
 # at least so many where it has few spans; and along any other curve, of which an arc may go all the way round.
@@ -45,7 +44,7 @@ MOST_POINTS = 500_000
 AT_ONCE = 100_000
 
 
-def trimmed_areas(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, chosen: Indices, bounds: Array) -> Array:
+def trimmed_areas(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, chosen: IntArray, bounds: Array) -> Array:
     """The areas (k,) of some faces within their borders, mm^2.
 
     By Green's theorem, area is the integral along the border, counterclockwise, of dv times the area of a strip of
@@ -76,7 +75,7 @@ def trimmed_areas(faces: Sequence[TopoDS_Face], surfaces: SurfaceBatch, chosen: 
     return np.abs(areas)
 
 
-def whole_areas(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], chosen: Indices) -> Array:
+def whole_areas(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], chosen: IntArray) -> Array:
     """The areas (k,) of some faces that fill their parameter ranges, mm^2.
 
     Args:
@@ -96,7 +95,7 @@ def whole_areas(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface],
     return areas
 
 
-def _integrated(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], chosen: Indices, count: int) -> Array:
+def _integrated(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], chosen: IntArray, count: int) -> Array:
     """The same with so many Gauss points each way over each span."""
     areas = np.zeros(len(chosen))
     places: list[tuple[int, Array, Array]] = []
@@ -113,18 +112,6 @@ def _integrated(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface],
             areas += np.bincount(owners, parts, minlength=len(areas))
             places, waiting = [], 0
     return areas
-
-
-def spans_of(surface: BRepAdaptor_Surface) -> tuple[int, int]:
-    """Of how many smooth pieces a surface is made along u and along v."""
-    return int(surface.NbUIntervals(GeomAbs_CN)), int(surface.NbVIntervals(GeomAbs_CN))
-
-
-def breaks_of(surface: BRepAdaptor_Surface, axis: int) -> Array:
-    """The ends of a surface's smooth pieces along u (0) or v (1), rising parameters."""
-    found = TColStd_Array1OfReal(1, spans_of(surface)[axis] + 1)
-    (surface.UIntervals if axis == 0 else surface.VIntervals)(found, GeomAbs_CN)
-    return np.array([found.Value(place) for place in range(1, found.Length() + 1)])
 
 
 def _rule(surface: BRepAdaptor_Surface, axis: int, count: int) -> tuple[Array, Array]:

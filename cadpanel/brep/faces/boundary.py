@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
@@ -15,10 +14,9 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
-from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch, kernel_values
-from cadpanel.geometry.polyline import cross, norm, unit
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.brep.faces.surface_batch import SurfaceBatch, kernel_values
+from cadpanel.geometry.vectors import cross, norm, unit
 
 # Points an edge at first, and at most. Each further pass may double their segments, so the number stays odd.
 FEWEST_POINTS = 33
@@ -62,7 +60,7 @@ class _Samples(NamedTuple):
 
     points: Array
     normals: Array
-    defined: NDArray[np.bool_]
+    defined: BoolArray
     parameters: Array
 
 
@@ -72,7 +70,7 @@ def evaluate(surface: BRepAdaptor_Surface, parameters: Array) -> tuple[Array, Ar
     return values[..., 0, :], values[..., 1, :], values[..., 2, :]
 
 
-def unit_normals(along_u: Array, along_v: Array, faces: Indices | int = 0) -> tuple[Array, Array, NDArray[np.bool_]]:
+def unit_normals(along_u: Array, along_v: Array, faces: IntArray | int = 0) -> tuple[Array, Array, BoolArray]:
     """Return the normals of faces from their derivatives.
 
     Args:
@@ -174,7 +172,7 @@ def _refined(curve: BRepAdaptor_Curve2d, surfaces: SurfaceBatch, face: int) -> _
     return _Samples(points, normals, defined, parameters)
 
 
-def _faults(points: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _faults(points: Array) -> tuple[BoolArray, BoolArray]:
     """Tell for (..., q, 3) polylines whether each turns too much between two segments, and is unevenly spaced."""
     segments = np.diff(points, axis=-2)
     lengths = norm(segments)

@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from cadpanel.brep.curves.pieces import CLOSE
-from cadpanel.brep.faces.area import spans_of
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.boundary import evaluate, unit_normals
 from cadpanel.brep.faces.face_patch import Patch
-from cadpanel.geometry.polyline import norm
-
-Array = NDArray[np.float64]
+from cadpanel.brep.kernel.splines import spans_of
+from cadpanel.brep.kernel.tolerances import CLOSE
+from cadpanel.geometry.vectors import norm
 
 # Least number of grid lines each way from which feet are looked for, and most steps of Newton's method from there.
 GRID = 41
@@ -53,8 +51,8 @@ class Feet:
     parameters: Array
     distances: Array
     asides: Array
-    on_border: NDArray[np.bool_]
-    by_border: NDArray[np.bool_]
+    on_border: BoolArray
+    by_border: BoolArray
 
     def part(self, start: int, stop: int) -> Feet:
         """Those from `start` up to `stop`."""
@@ -67,7 +65,7 @@ class Feet:
             by_border=self.by_border[own],
         )
 
-    def take(self, places: NDArray[np.intp], others: Feet, which: NDArray[np.bool_]) -> None:
+    def take(self, places: IntArray, others: Feet, which: BoolArray) -> None:
         """Put those of other feet at places of these."""
         for name in ("parameters", "distances", "asides", "on_border", "by_border"):
             getattr(self, name)[places] = getattr(others, name)[which]
@@ -89,7 +87,7 @@ class _Grid:
     reaches: Array
     cells: Array
 
-    def nearest(self, points: Array, count: int) -> tuple[Array, NDArray[np.intp]]:
+    def nearest(self, points: Array, count: int) -> tuple[Array, IntArray]:
         """The nearest nodes of each of (m, 3) points: (m, count) distances in mm, and numbers."""
         distances, nodes = self.tree.query(points, k=np.arange(1, count + 1))
         return np.asarray(distances), np.asarray(nodes, dtype=np.intp)
@@ -203,7 +201,7 @@ def _newton(away: Array, along_u: Array, along_v: Array) -> Array:
     return np.stack([(g * p - f * q) / determinant, (e * q - f * p) / determinant], axis=1)
 
 
-def _alone(away: Array, along_u: Array, along_v: Array, blocked: NDArray[np.bool_]) -> Array:
+def _alone(away: Array, along_u: Array, along_v: Array, blocked: BoolArray) -> Array:
     """The step in the parameter that is not blocked."""
     steps = [
         np.sum(away * along, axis=1) / np.maximum(np.sum(along * along, axis=1), np.finfo(float).tiny)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_C1
 from OCP.TColStd import TColStd_Array1OfReal
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.boundary import evaluate, unit_normals
 from cadpanel.brep.faces.face_patch import Patch
-
-Array = NDArray[np.float64]
 
 # Places along a parameter line at which both sides of it are compared, and how far beside it they are looked at, as a
 # part of the parameter range.

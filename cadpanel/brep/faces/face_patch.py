@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
@@ -14,13 +13,12 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 from scipy.interpolate import PchipInterpolator
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.boundary import Edge, evaluate, sample_edges, unit_normals
 from cadpanel.brep.faces.parameter_range import parameter_range
 from cadpanel.brep.faces.pcurve_repair import sharpen_trims
 from cadpanel.brep.faces.surface_batch import SurfaceBatch
 from cadpanel.brep.kernel.points import TOLERANCE
-
-Array = NDArray[np.float64]
 
 # How closely a boundary must follow the border of the parameter range for the face to count as whole, as a part of it.
 BORDER = 1e-6

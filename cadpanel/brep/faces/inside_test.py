@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.TopAbs import TopAbs_OUT
 
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.kernel import points as kernel
-from cadpanel.geometry.polyline import distances_to_polylines, norm, side_of
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import distances_to_polylines
+from cadpanel.geometry.vectors import norm, side_of
 
 # Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
 INSIDE = 1e-9
@@ -27,7 +26,7 @@ class Trim:
         self._patch = patch
         self._test = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds, axis=1).min()))
 
-    def encloses(self, parameters: Array) -> NDArray[np.bool_]:
+    def encloses(self, parameters: Array) -> BoolArray:
         """Which of (m, 2) parameters lie on the face or on its border."""
         tested = [self._test.Perform(kernel.point_2d(*place)) != TopAbs_OUT for place in parameters.tolist()]
         return np.array(tested, dtype=np.bool_)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepTools import BRepTools
 from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
@@ -16,9 +15,8 @@ from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
-from cadpanel.brep.files.model import shapes_of
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.brep.kernel.shapes import shapes_of
 
 # Parts of each span of a border at first, and of the stretch around its farthest point later on.
 PARTS = 8

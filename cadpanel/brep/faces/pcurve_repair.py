@@ -19,8 +19,8 @@ from OCP.ShapeFix import ShapeFix_ShapeTolerance
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
 
-from cadpanel.brep.files.model import shapes_of
 from cadpanel.brep.kernel.points import TOLERANCE
+from cadpanel.brep.kernel.shapes import shapes_of
 
 # An edge whose tolerance or whose parameter curve's distance is larger has that curve laid anew, mm.
 COARSE = 1e-3

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.gp import gp_Pnt2d
@@ -18,6 +17,7 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.arc_length_grid import (
     Strides,
     are_uneven,
@@ -28,12 +28,11 @@ from cadpanel.brep.faces.arc_length_grid import (
     measure_strides,
     summed,
 )
-from cadpanel.brep.faces.area import breaks_of, spans_of, trimmed_areas, whole_areas
+from cadpanel.brep.faces.area import trimmed_areas, whole_areas
 from cadpanel.brep.faces.boundary import Edge, sample_edges, unit_normals
-from cadpanel.brep.faces.surface_batch import Indices, SurfaceBatch
+from cadpanel.brep.faces.surface_batch import SurfaceBatch
+from cadpanel.brep.kernel.splines import breaks_of, spans_of
 from cadpanel.reference.model import FaceSamples
-
-Array = NDArray[np.float64]
 
 SAMPLES_PER_PANEL = 125
 FEWEST_SAMPLES_PER_FACE = 9
@@ -84,7 +83,7 @@ class _MeasuredFaces:
     lines: tuple[Array, Array]
     reach: tuple[Array, Array]
     edges: list[list[Edge]]
-    trimmed: NDArray[np.bool_]
+    trimmed: BoolArray
     areas: Array
     full_areas: Array
 
@@ -165,7 +164,7 @@ def _walk(
     steps_u, steps_v = (np.repeat(speeds / parts, parts, axis=1) for speeds in coarse.speeds)
     lines, steps, areas = even_lines(len(adaptors), FINE_MEASURING_GRID), (steps_u, steps_v), coarse.areas
 
-    def take(chosen: Indices, found: Strides) -> None:
+    def take(chosen: IntArray, found: Strides) -> None:
         areas[chosen] = found.areas
         for way in (0, 1):
             steps[way][chosen] = found.speeds[way]
@@ -190,7 +189,7 @@ def _walk(
     return lines, steps, areas
 
 
-def _are_trimmed(edges: list[list[Edge]], bounds: Array) -> NDArray[np.bool_]:
+def _are_trimmed(edges: list[list[Edge]], bounds: Array) -> BoolArray:
     """Tell for each face whether any part of its boundary runs inside the parameter range, not along its border."""
     trimmed = np.zeros(len(edges), dtype=bool)
     owners = np.array([face for face, own in enumerate(edges) for edge in own for _ in edge.parameters], dtype=np.intp)
@@ -240,7 +239,7 @@ def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
     return found
 
 
-def _corrections(measured: _MeasuredFaces, owners: Indices, weights: Array, speeds: Array) -> Array:
+def _corrections(measured: _MeasuredFaces, owners: IntArray, weights: Array, speeds: Array) -> Array:
     """(F,) factors that make weights add up to the areas of untrimmed faces; 1 for trimmed ones.
 
     Args:
@@ -259,7 +258,7 @@ def _corrections(measured: _MeasuredFaces, owners: Indices, weights: Array, spee
     return factors
 
 
-def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> NDArray[np.intp]:
+def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> IntArray:
     """(F, 2) cells by u and v for about `wanted` (F,) samples of each face."""
     wanted = np.maximum(wanted, FEWEST_SAMPLES_PER_FACE)
     cut = measured.trimmed & (measured.areas > 0.0)
@@ -272,7 +271,7 @@ def _grid_sizes(measured: _MeasuredFaces, wanted: Array) -> NDArray[np.intp]:
     return np.stack([count_u, count_v], axis=1).astype(np.intp)
 
 
-def _even_border(measured: _MeasuredFaces, way: int, owners: Indices, parts: Array) -> Array:
+def _even_border(measured: _MeasuredFaces, way: int, owners: IntArray, parts: Array) -> Array:
     """Return the parts of their parameter ranges up to which (p,) faces have been walked to `parts` of their length.
 
     Args:
@@ -292,7 +291,7 @@ def _even_border(measured: _MeasuredFaces, way: int, owners: Indices, parts: Arr
     return np.where(even, parts, first + within * (last - first))
 
 
-def _inside(measured: _MeasuredFaces, face: int, parameters: Array) -> NDArray[np.bool_]:
+def _inside(measured: _MeasuredFaces, face: int, parameters: Array) -> BoolArray:
     """Tell for each of the (m, 2) parameters whether it lies inside the trimmed face."""
     classifier = BRepTopAdaptor_FClass2d(measured.faces[face], INSIDE * float(np.ptp(measured.bounds[face])))
     return np.array([classifier.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in parameters.tolist()], dtype=np.bool_)

@@ -11,7 +11,6 @@ from dataclasses import replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.Geom import Geom_BSplineSurface, Geom_Surface
 from OCP.GeomAbs import GeomAbs_BezierSurface, GeomAbs_BSplineSurface
@@ -19,10 +18,8 @@ from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TColStd import TColStd_Array1OfReal
 
-from cadpanel.geometry.shape import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.spline_surface import SplineSurface, SplineSurfaces
-
-Indices = NDArray[np.intp]
 
 
 class SurfaceBatch:
@@ -65,7 +62,7 @@ class SurfaceBatch:
             group.append(own)
         self._groups = [SplineSurfaces(members[kind]) for kind in kinds]
 
-    def evaluate(self, faces: Indices, parameters: Array) -> tuple[Array, Array, Array]:
+    def evaluate(self, faces: IntArray, parameters: Array) -> tuple[Array, Array, Array]:
         """The points and the two first derivatives, each (..., 3) in mm.
 
         Arguments:
@@ -86,7 +83,7 @@ class SurfaceBatch:
         shaped = values.reshape(*parameters.shape[:-1], 3, 3)
         return shaped[..., 0, :], shaped[..., 1, :], shaped[..., 2, :]
 
-    def _in_period(self, owners: Indices, parameters: Array) -> Array:
+    def _in_period(self, owners: IntArray, parameters: Array) -> Array:
         """The parameters, those of periodic surfaces within the period that has the poles."""
         start, length = self._periods[owners].transpose(2, 0, 1)
         if np.isinf(length).all():

@@ -13,8 +13,10 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_COMPSOLID, TopAbs_FACE, TopAbs_SH
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.files.format import Format
-from cadpanel.brep.files.model import Label, Model, Part, children, shapes_of
-from cadpanel.brep.files.units import no_unit, scaled, unit_taken
+from cadpanel.brep.files.model import Label, Model, Part
+from cadpanel.brep.files.units import no_unit, unit_taken
+from cadpanel.brep.kernel.shapes import children, shapes_of
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
 TEXT = re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology V\d)")

@@ -13,9 +13,10 @@ from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.files.format import Format
 from cadpanel.brep.files.model import Model
-from cadpanel.brep.files.units import scaled, unit_taken
+from cadpanel.brep.files.units import unit_taken
 from cadpanel.brep.files.xcaf import new_document, parts_of
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
 # The start section's first line, in columns 73 to 80; and the terminate section's only one.

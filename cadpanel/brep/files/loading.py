@@ -12,10 +12,12 @@ from OCP.BRepBndLib import BRepBndLib
 from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.files.catalogue import checked_format_of
-from cadpanel.brep.files.model import Model, compound_of
-from cadpanel.brep.files.units import refuse_given, shifted
+from cadpanel.brep.files.model import Model
+from cadpanel.brep.files.packing import PackedModel
+from cadpanel.brep.files.units import refuse_given
 from cadpanel.brep.isolation.client import read_guarded
-from cadpanel.brep.server import PackedModel
+from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.errors import ReferenceFileError
 
 FAR = 1e7

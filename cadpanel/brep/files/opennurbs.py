@@ -11,7 +11,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
@@ -30,9 +29,8 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_A
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
-from cadpanel.brep.files.model import compound_of, shapes_of
-
-Array = NDArray[np.float64]
+from cadpanel.arrays import Array
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 
 # How far a trimming curve may run off its surface, in units of the file: Rhino's own default tolerances are smaller.
 TRIM_TOLERANCE = 1e-2

@@ -17,10 +17,12 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cadpanel.brep.faces.pcurve_repair import sharpen_trims
 from cadpanel.brep.files.format import Format, check_nothing
-from cadpanel.brep.files.model import Label, Model, Part, shapes_of
+from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
 from cadpanel.brep.files.rhino_objects import RhinoFile, RhinoObject, placed_objects, put
-from cadpanel.brep.files.units import scaled, unit_taken
+from cadpanel.brep.files.units import unit_taken
+from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
 MAGIC = re.compile(rb"\s*3D Geometry File Format")

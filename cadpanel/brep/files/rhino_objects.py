@@ -12,16 +12,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepTools import BRepTools_GTrsfModification, BRepTools_Modifier
 from OCP.gp import gp_GTrsf
 from OCP.TopoDS import TopoDS_Shape
 
+from cadpanel.arrays import Array
 from cadpanel.brep.files.model import Label
 from cadpanel.brep.files.opennurbs import ConversionError
 from cadpanel.errors import ReferenceFileError
-
-Array = NDArray[np.float64]
 
 # Blocks may hold blocks; a file in which they go deeper than this holds itself.
 DEEPEST_BLOCK = 32

@@ -13,9 +13,10 @@ from cadpanel.brep.files.format import Format
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.files.step_products import file_unit, transfer
 from cadpanel.brep.files.text_check import START, check_step_text
-from cadpanel.brep.files.units import scaled, unit_missing, unit_taken
+from cadpanel.brep.files.units import unit_missing, unit_taken
 from cadpanel.brep.files.xcaf import new_document, parts_of
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
 # The kernel's switch for names below products; off by default.

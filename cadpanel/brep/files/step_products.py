@@ -26,10 +26,11 @@ from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cadpanel.brep.files.model import NamedShape, Products
 from cadpanel.brep.files.names import call_panels
 from cadpanel.brep.files.step_damage import damage
-from cadpanel.brep.files.units import scaled
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
 # Names that programs give when the user gave none.
@@ -38,14 +39,6 @@ GENERIC_NAME = re.compile(
     r"(compound|shell|open shell|face|surface|product|part|none|unnamed|no name)[ _.:#-]*\d*",
     re.IGNORECASE,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class NamedShape:
-    """A shape placed in the file's coordinates (mm), under a name of its own."""
-
-    name: str
-    shape: TopoDS_Shape
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,19 +54,6 @@ class _Use:
     product: str
     instance: str
     shape: TopoDS_Shape
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Products:
-    """The panels of a file.
-
-    Attributes:
-        shapes: placed, in file order, mm.
-        unit: the file's unit of length in its own words; None where it says none.
-    """
-
-    shapes: tuple[NamedShape, ...]
-    unit: str | None
 
 
 def read_products(path: Path, millimetres: float | None = None) -> Products:

@@ -22,8 +22,9 @@ from OCP.XCAFDoc import (
     XCAFDoc_ShapeTool,
 )
 
-from cadpanel.brep.files.model import Label, Part, compound_of, shapes_of
+from cadpanel.brep.files.model import Label, Part
 from cadpanel.brep.files.step_products import instance_name, is_sheet_in_pieces, label_name, split_groups
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 
 
 def new_document() -> TDocStd_Document:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from OCP.gp import gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
 
-from cadpanel.geometry.shape import Array
+from cadpanel.arrays import Array
 
 TOLERANCE = 1e-7
 """Tolerance of every vertex, edge and face that is built, mm."""

@@ -15,11 +15,12 @@ from typing import Literal
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.brep.proof.parallel import Helper, inspect_files
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
 from cadpanel.geometry.kink import edge_angles
-from cadpanel.geometry.shape import Array, edge_corners
+from cadpanel.geometry.shape import edge_corners
 
 TANGENCY_LIMIT = 1e-9
 """Radians between neighbouring patches, read back."""

@@ -21,8 +21,8 @@ from typing import BinaryIO
 
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.brep.files.model import packed, unpacked
 from cadpanel.brep.isolation.interpreter import interpreter
+from cadpanel.brep.kernel.shapes import packed, unpacked
 from cadpanel.brep.proof.shape_facts import ShapeFacts, inspect
 from cadpanel.brep.step.file import step_shapes
 from cadpanel.errors import DeliveryError

@@ -17,9 +17,9 @@ from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
+from cadpanel.arrays import Array
 from cadpanel.brep.building.sheet import volume_of
 from cadpanel.geometry.curve_hausdorff import CurvePieces
-from cadpanel.geometry.shape import Array
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
 

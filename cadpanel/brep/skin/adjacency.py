@@ -8,16 +8,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.faces.boundary import Edge
 from cadpanel.brep.skin.face_cleanup import SkinFace
-from cadpanel.geometry.polyline import distances_to_curves, norm
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import distances_to_curves
+from cadpanel.geometry.vectors import norm
 
 # Places on an edge, as parts of its points, of which one must lie on the other edge for the two to touch.
 PROBES = (0.25, 0.5, 0.75)
@@ -224,7 +223,7 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
 
 
-def levels(values: Array, tolerance: float) -> NDArray[np.intp]:
+def levels(values: Array, tolerance: float) -> IntArray:
     """(n,) the rank of values, in which those that follow each other within a tolerance share one.
 
     Rounding would part two that lie on either side of a half.

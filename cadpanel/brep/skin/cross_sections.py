@@ -6,18 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Face
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.skin.adjacency import Surface
+from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.skin.iso_strip import Lanes, find_lanes
 from cadpanel.brep.skin.split_by_planes import THROUGH, cut_by_planes
-from cadpanel.brep.skin.strip import Cuts, find_strip
+from cadpanel.brep.skin.strip import find_strip
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import arc_length, interpolate, norm
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.polyline import arc_length, interpolate
+from cadpanel.geometry.vectors import norm
 
 # Points of a section on each face that it crosses, and on the mean of several sections.
 POINTS = 257
@@ -59,7 +59,7 @@ class Sections:
     sections: tuple[CrossSection, ...]
     strip_length: float
     lanes: Lanes | None = None
-    lane: NDArray[np.intp] | None = None
+    lane: IntArray | None = None
     across: Array | None = None
 
     @property

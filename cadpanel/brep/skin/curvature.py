@@ -6,16 +6,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.TopAbs import TopAbs_IN
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.skin.face_cleanup import SkinFace
-from cadpanel.geometry.polyline import cross, norm
+from cadpanel.geometry.vectors import cross, norm
 
-Array = NDArray[np.float64]
 Class = Literal["flat", "developable", "doubly curved"]
 
 FLAT = 0.1

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS_Face
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.creases import crease_of
 from cadpanel.brep.faces.face_patch import Patch, patch_of
@@ -19,8 +19,6 @@ from cadpanel.brep.files.model import ModelFace
 from cadpanel.errors import ReferenceFileError
 from cadpanel.geometry.polyline import arc_lengths, distances_to_curves
 from cadpanel.reference.model import FaceSamples
-
-Array = NDArray[np.float64]
 
 # A face whose area is less than this part of its boundary's length squared is a line.
 SLIVER = 1e-6

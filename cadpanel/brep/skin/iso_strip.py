@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Face
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch, equal_parts, lengths_along, rectangle
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.geometry.polyline import norm
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.vectors import norm
 
 # Parameter lines each way on which a face's curvature is looked at.
 MEASURED_LINES = 17

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.brep.skin.cross_sections import CrossSection, Sections
-
-Array = NDArray[np.float64]
 
 # Parts of the strip's length at which it is looked at across to find its lips.
 SECTIONS = np.array([0.1, 0.3, 0.5, 0.7, 0.9])

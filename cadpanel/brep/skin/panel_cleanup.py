@@ -11,7 +11,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cadpanel.brep.faces.creases import crease_of, has_breaks
 from cadpanel.brep.faces.face_patch import patch_of
-from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.skin.adjacency import WORTH_A_NOTE
 from cadpanel.brep.skin.face_cleanup import find_doubles, width_of_hair
 from cadpanel.reference.model import RawPanel

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.TopoDS import TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -15,9 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from cadpanel.brep.faces.face_patch import equal_parts, lengths_along
 from cadpanel.brep.skin.adjacency import Surface, levels
 from cadpanel.brep.skin.iso_strip import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
-from cadpanel.geometry.polyline import cross
-
-Array = NDArray[np.float64]
+from cadpanel.geometry.vectors import cross
 
 # Places within this of each other along an axis of space, in mm, count as equally far along it.
 LEVEL = 1.0

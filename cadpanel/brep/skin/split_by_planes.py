@@ -8,23 +8,21 @@ face goes through the kernel's splitter. Either way every piece is held against 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.gp import gp_Pln
 from OCP.TopoDS import TopoDS_Face
 from scipy.spatial import cKDTree
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.face_patch import Patch, patch_of
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.brep.skin.strip import Cuts
+from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.splitting.split_by_pcurves import slice_patch
 from cadpanel.brep.splitting.splitter import split_faces
 from cadpanel.errors import ReferenceFileError
-
-Array = NDArray[np.float64]
 
 # Lines of the grid on which a face is evaluated to find where planes cross it, across and along the strip.
 LINES_ACROSS = 33
@@ -70,7 +68,7 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
     return groups
 
 
-def places_of(points: Array, cuts: Cuts) -> NDArray[np.intp]:
+def places_of(points: Array, cuts: Cuts) -> IntArray:
     """Between which planes (m, 3) points lie: 0 before the first one, k behind the last one."""
     _, nearest = cKDTree(cuts.line).query(points)
     count = len(cuts.origins)
@@ -144,7 +142,7 @@ def _rises(patch: Patch, axis: int, normal: Array) -> bool:
 
 def _crossings(
     patch: Patch, axis: int, across: Array, origins: Array, normals: Array, reach: Array
-) -> tuple[NDArray[np.bool_], Array] | None:
+) -> tuple[BoolArray, Array] | None:
     """Where planes cross the parameter lines of a patch.
 
     Returns:
@@ -173,7 +171,7 @@ def _crossings(
 
 
 def _refined(
-    patch: Patch, axis: int, across: Array, along: Array, cells: NDArray[np.intp], origins: Array, normals: Array
+    patch: Patch, axis: int, across: Array, along: Array, cells: IntArray, origins: Array, normals: Array
 ) -> Array | None:
     """Solve for the crossings within their cells by Newton's method, kept inside by bisection: (c, w)."""
     low, high = along[cells], along[cells + 1]

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.brep.skin.adjacency import Surface
+from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.errors import OutlineError, ReferenceFileError
-from cadpanel.geometry.polyline import arc_length, interpolate, norm, unit
+from cadpanel.geometry.polyline import arc_length, interpolate
+from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import Side, find_outline
-
-Array = NDArray[np.float64]
 
 CUT_OTHERWISE = "cut it with a grid, a network of curves or a mesh"
 """What to do about a surface that is no strip."""
@@ -30,25 +30,6 @@ REACH = 0.6
 MIDDLE_POINTS = 1025
 # Half the step by which directions along the long edges are measured, as a part of the length.
 STEP = 1e-3
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cuts:
-    """Planes across a surface, in order along it.
-
-    Attributes:
-        origins: (k, 3) a point of each, mm.
-        normals: (k, 3) unit normals, along the surface.
-        reach: (k,) how far each plane reaches from its origin, mm.
-        line: (q, 3) points along the middle of the surface.
-        places: (q,) at which place among the planes each of them lies: 1.5 is half-way between the first two.
-    """
-
-    origins: Array
-    normals: Array
-    reach: Array
-    line: Array
-    places: Array
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,7 +21,7 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN, TopAbs_INTERNAL, 
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cadpanel.brep.files.model import compound_of, shapes_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import FUZZY, Pieces, listed, require_whole, split_faces, unsplit
 
 # Tolerance of the test whether a part of an edge lies inside a face's border, in the parameter plane.

@@ -5,23 +5,19 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
 from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
 from OCP.Geom import Geom_Surface
-from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.Geom2d import Geom2d_Curve
 from OCP.TopoDS import TopoDS, TopoDS_Face
-from scipy.interpolate import BSpline, make_interp_spline
+from scipy.interpolate import make_interp_spline
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch, geometry, rectangle
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import DEGREE, spline_curve
 
-Array = NDArray[np.float64]
-
-DEGREE = 3
 # A cut that stays within this part of the range is a parameter line.
 STRAIGHT = 1e-12
 
@@ -73,16 +69,3 @@ def _curve(patch: Patch, axis: int, across: Array, parts: Array) -> Geom2d_Curve
     if np.ptp(parts) <= STRAIGHT:
         return _segment(parameters[0], parameters[-1])
     return spline_curve(make_interp_spline(across, parameters, k=DEGREE))
-
-
-def spline_curve(spline: BSpline) -> Geom2d_Curve:
-    """A spline of the parameter plane as the kernel's."""
-    poles = TColgp_Array1OfPnt2d(1, len(spline.c))
-    for index, (u, v) in enumerate(np.asarray(spline.c, dtype=np.float64).tolist(), start=1):
-        poles.SetValue(index, kernel.point_2d(u, v))
-    values, counts = np.unique(spline.t, return_counts=True)
-    knots, multiplicities = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
-    for index, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True), start=1):
-        knots.SetValue(index, value)
-        multiplicities.SetValue(index, count)
-    return Geom2d_BSplineCurve(poles, knots, multiplicities, int(spline.k))

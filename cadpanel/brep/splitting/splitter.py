@@ -20,7 +20,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_ListOfShape
 
 from cadpanel.brep.faces.area import enclosed
-from cadpanel.brep.files.model import shapes_of
+from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.errors import ReferenceFileError
 
 FUZZY = 1e-3

@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
-from cadpanel.geometry.shape import AnyShape, Array, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
 
 
 def patch_models(shape: AnyShape) -> tuple[PatchModel, ...]:

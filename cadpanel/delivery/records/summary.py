@@ -6,7 +6,7 @@ import numpy as np
 
 from cadpanel.delivery.records.report import SummaryModel
 from cadpanel.fitting.measures.fit import Measures
-from cadpanel.fitting.result import keeps_limits
+from cadpanel.fitting.measures.verdict import keeps_limits
 from cadpanel.fitting.settings import FitSettings
 
 # A local fit closer than this, mm, is exact: a multiple of it would be a multiple of rounding.

@@ -1,48 +1,33 @@
-"""The paper's Table 1 for one reference: two-stage and concurrent, each with cylinders and with cones."""
+"""From the results of a comparison to compare.json."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
-from cadpanel.delivery.folder import delivery_folder
-from cadpanel.delivery.names import COMPARISON
+from cadpanel.delivery.folder import COMPARISON, delivery_folder
 from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel, write_comparison
 from cadpanel.delivery.records.from_fit import reference_record, seam_names, settings_record
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.fitting.result import FitResult, fit
-from cadpanel.fitting.settings import FitSettings, Method
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 
-METHODS: tuple[Method, ...] = ("two_stage", "concurrent")
-FEATURES = ("plane-cylinder-plane", "plane-cone-plane")
 
-# The column (feature and method) that is being fitted, the round, and the largest excess over a tolerance.
-Progress = Callable[[str, str, int, float], None]
-
-
-def compare(
-    reference: Reference, settings: FitSettings | None = None, *, progress: Progress | None = None
-) -> ComparisonModel:
-    """Fit a reference four ways under the same tolerance and limits.
+def comparison_record(reference: Reference, settings: FitSettings, results: Sequence[FitResult]) -> ComparisonModel:
+    """What compare.json holds.
 
     Args:
-        reference: what is to be approximated.
-        settings: tolerance, limits, tilt and restarts; its feature and method are not used.
-        progress: told when a column begins (round 0), and of every round of a concurrent fit.
-
-    Raises:
-        PanelError: a panel's faces are nothing that a feature could approximate.
+        reference: what was approximated.
+        settings: tolerance, limits, tilt and restarts of all columns.
+        results: one a column, as `studies.table1.compare` gives them.
     """
-    how = settings or FitSettings()
-    columns = tuple(_column(reference, how, feature, method, progress) for method in METHODS for feature in FEATURES)
     return ComparisonModel(
         reference=reference_record(reference),
-        settings=_settings_record(reference, how),
+        settings=_settings_record(reference, settings),
         seams=seam_names(reference),
-        columns=columns,
+        columns=tuple(map(_record, results)),
     )
 
 
@@ -54,18 +39,6 @@ def write_comparison_folder(comparison: ComparisonModel, out: Path, *, overwrite
     """
     with delivery_folder(out, overwrite=overwrite) as folder:
         write_comparison(comparison, folder / COMPARISON)
-
-
-def _column(
-    reference: Reference, settings: FitSettings, feature: str, method: Method, progress: Progress | None
-) -> ColumnModel:
-    def tell(_method: str, round_: int, excess: float) -> None:
-        if progress is not None:
-            progress(feature, method, round_, excess)
-
-    tell(method, 0, 0.0)
-    result = fit(reference, replace(settings, feature=feature, method=method, max_deviation=None), tell)
-    return _record(result)
 
 
 def _settings_record(reference: Reference, settings: FitSettings) -> ComparisonSettingsModel:

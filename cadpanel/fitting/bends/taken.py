@@ -6,19 +6,16 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
-from cadpanel.features.catalogue import PanelFeature
 from cadpanel.features.feature import Feature
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.start.segmentation import curved_runs
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.reference.model import PanelReference, Reference
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Lines across which a panel is walked from side to side, in each of the three stretches.
 LINES = 17

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.shapes import edge_curves
 from cadpanel.geometry.end_curves import closest
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 
 def outline_distances(problem: Problem, reference: Reference, state: State) -> Array:

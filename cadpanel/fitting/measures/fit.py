@@ -13,8 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.fitting.measures.boundary import outline_distances, overhang
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.shapes import edge_curves
@@ -22,8 +22,6 @@ from cadpanel.geometry.end_curves import EndCurves, seam_gap
 from cadpanel.reference.model import Reference
 from cadpanel.terms.seams import SeamBatch
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,23 +9,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
-from cadpanel.features.catalogue import PanelFeature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.start.frames import Frames, reframe
 from cadpanel.fitting.start.polygons import start_polygons
 from cadpanel.fitting.start.segmentation import curved_runs, cut_profile
-from cadpanel.geometry.frames import cross, dot
+from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.suitability import check_corners, check_fold
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # A curved patch turns by at least this at the start, radians: where it turned by nothing its radius would be unknown.
 _LEAST_SWEEP = 1e-3

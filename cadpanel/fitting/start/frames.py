@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.feature import Feature
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.start.frames import Frames
-from cadpanel.geometry.frames import cross
+from cadpanel.geometry.vectors import cross
 from cadpanel.reference.model import PanelReference
-
-Array = NDArray[np.float64]
 
 
 def start_polygons(panels: Sequence[PanelReference], samples: SampleArrays, length: float) -> Frames:

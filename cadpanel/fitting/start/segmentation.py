@@ -12,10 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+from cadpanel.arrays import Array, IntArray
 
 # No patch is shorter than so many steps, unless there are too many patches for that.
 SHORTEST = 2

@@ -9,15 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.tolerance_weights import Hold
 from cadpanel.terms.rows import Rows, add_rows
 from cadpanel.terms.state import State, slopes
-
-Array = NDArray[np.float64]
-IntArray = NDArray[np.intp]
 
 # Weight of a squared drift against the mean squared deviation: 100 mm of drift count like 1 mm of deviation.
 LEAST_PULL = 1e-4
@@ -63,7 +60,7 @@ class Outline:
     corners: Array
     along: Limited
     across: Limited
-    sided: NDArray[np.bool_]
+    sided: BoolArray
 
     def take(self, panels: IntArray) -> Outline:
         """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.layout import Group
-from cadpanel.features.walk import Points, Walk
-from cadpanel.geometry.frames import cross, dot
+from cadpanel.features.rulings import Points, Walk
+from cadpanel.geometry.vectors import cross, dot
 from cadpanel.terms.limits.lower_bound import LackLimit
-
-Array = NDArray[np.float64]
 
 
 class WidthLimit(LackLimit):

@@ -5,16 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.layout import Group
-from cadpanel.features.walk import Points, Walk
+from cadpanel.features.rulings import Points, Walk
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.tolerance_weights import Hold
 from cadpanel.terms.rows import Rows, add_rows
 from cadpanel.terms.state import State
-
-Array = NDArray[np.float64]
 
 # The held number may be as large as this share of the least length, so that much more is asked for.
 _SPARE = 0.1

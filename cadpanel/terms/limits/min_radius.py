@@ -7,14 +7,13 @@ is least at a corner, so that is where it is held.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from cadpanel.arrays import Array
 from cadpanel.features.layout import Group
-from cadpanel.features.walk import Points, Walk
-from cadpanel.geometry.frames import dot, point_velocity
+from cadpanel.features.rulings import Points, Walk
+from cadpanel.geometry.frames import point_velocity
+from cadpanel.geometry.vectors import dot
 from cadpanel.terms.limits.lower_bound import LackLimit
-
-Array = NDArray[np.float64]
 
 
 class RadiusLimit(LackLimit):

@@ -1,0 +1,54 @@
+"""The planes that cut the ends of walked panels, and how they follow the numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.features.rulings import PanelFeature, Walk
+from cadpanel.geometry.frames import point_velocity
+from cadpanel.geometry.vectors import cross, dot
+
+
+def cut_planes(walked: Walk) -> tuple[Array, Array]:
+    """The cut planes m . x = s: m (panels, 2, 3), not of unit length, and s (panels, 2)."""
+    feature, values = walked.feature, walked.values
+    cuts = np.stack([values[:, feature.cut_slice(end)] for end in (0, 1)], axis=1)
+    m = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
+    if not carried(feature):
+        return m, cuts[..., 0]
+    anchor = walked.anchor
+    m = m @ np.stack([anchor.b[:, 0], anchor.t[:, 0], anchor.n[:, 0]], axis=1)
+    return m, cuts[..., 0] + dot(m, anchor.p)
+
+
+def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
+    """How `cut_planes` follow the numbers: dm (panels, 2, 3, N) and ds (panels, 2, N)."""
+    feature, anchor = walked.feature, walked.anchor
+    panels, count = walked.values.shape
+    dm, ds = np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))
+    for end in (0, 1):
+        at = feature.cut_slice(end).start
+        ds[:, end, at] = 1.0
+        if not carried(feature):
+            dm[:, end, 0, at + 1] = dm[:, end, 2, at + 2] = 1.0
+            continue
+        for number, axis in ((at + 1, anchor.b), (at + 2, anchor.n)):
+            dm[:, end, :, number] = axis[:, 0]
+            ds[:, end, number] = dot(axis[:, 0], anchor.p[:, 0])
+    if carried(feature):
+        if anchor.twist is None:
+            raise ValueError("the panels were walked without derivatives")
+        m, _ = cut_planes(walked)
+        turned = cross(np.swapaxes(anchor.twist[:, :, :3], 2, 3), m[:, :, None])
+        dm += np.swapaxes(turned, 2, 3)
+        # The plane's point p moves along: d(m . p) = dm . p + m . v(p).
+        ds += dot(turned, anchor.p[:, :, None]) + np.einsum(
+            "pex,pxj->pej", m, point_velocity(anchor.twist[:, 0], anchor.p[:, 0])
+        )
+    return dm, ds
+
+
+def carried(feature: PanelFeature) -> bool:
+    """Whether the cut planes move with the anchor ruling."""
+    return feature.cuts == "square"

@@ -1,0 +1,142 @@
+"""What walking a feature gives: rulings, points, and how both follow the numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, Protocol, Self
+
+from cadpanel.arrays import Array, IntArray
+from cadpanel.features.numbers import Number
+from cadpanel.features.panel_edges import Edge
+from cadpanel.features.patches import Patch
+
+Cuts = Literal["mitre", "upright", "parallel", "square"]
+
+
+class PanelFeature(Protocol):
+    """What fits, terms and seams ask of anything that can be fitted to one panel: a chain or a polygon.
+
+    Attributes:
+        name: as reports call it.
+        patches: in the order of the walk.
+        cuts: how the planes lie that cut the two ends.
+        anchor: index of the patch in whose middle the walk starts.
+        numbers: all numbers.
+        free: (free,) indices of the numbers that the fit may choose.
+        curved: for each patch whether it is a cone or cylinder.
+        edges: the boundary, edge by edge.
+        corner_count: number of corners.
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102 - the class says it
+
+    @property
+    def patches(self) -> tuple[Patch, ...]: ...  # noqa: D102
+
+    @property
+    def cuts(self) -> Cuts: ...  # noqa: D102
+
+    @property
+    def anchor(self) -> int: ...  # noqa: D102
+
+    @property
+    def numbers(self) -> tuple[Number, ...]: ...  # noqa: D102
+
+    @property
+    def free(self) -> IntArray: ...  # noqa: D102
+
+    @property
+    def curved(self) -> tuple[bool, ...]: ...  # noqa: D102
+
+    @property
+    def edges(self) -> tuple[Edge, ...]: ...  # noqa: D102
+
+    @property
+    def corner_count(self) -> int: ...  # noqa: D102
+
+    def in_units(self, length: float) -> Self:
+        """The same feature with lengths counted in units of `length` mm."""
+        ...
+
+    def patch_slice(self, patch: int) -> slice:
+        """Where the numbers of one patch stand among `numbers`."""
+        ...
+
+    def cut_slice(self, end: int) -> slice:
+        """Where position, skew and tilt of one cut plane stand among `numbers`."""
+        ...
+
+    def expand(self, unknowns: Array) -> Array:
+        """(n, numbers) all numbers from the (n, free) unknowns."""
+        ...
+
+    def by_unknowns(self, derivatives: Array) -> Array:
+        """Derivatives (..., free) by the unknowns, from those (..., numbers) by all numbers."""
+        ...
+
+    def bounds(self) -> tuple[Array, Array]:
+        """(free,) least and greatest values of the unknowns."""
+        ...
+
+    def walk(self, values: Array, *, derivatives: bool) -> Walk:
+        """Walk panels with these numbers (n, numbers)."""
+        ...
+
+    def corners(self, walked: Walk) -> Points:
+        """The corners (n, corners, 3) of walked panels."""
+        ...
+
+    def arcs(self, walked: Walk) -> Points:
+        """The arc points (n, arcs, 3) of walked panels."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Rulings:
+    """n x R ruling frames and their twists.
+
+    Attributes:
+        p, b, t, n: (panels, R, 3) each.
+        twist: (panels, R, 6, N) for the N numbers of the feature, or None where no derivatives were asked for.
+    """
+
+    p: Array
+    b: Array
+    t: Array
+    n: Array
+    twist: Array | None
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """A batch of panels, walked.
+
+    Attributes:
+        feature: the feature of all these panels.
+        values: (panels, N) all numbers, the fixed ones included.
+        anchor: the ruling in the middle of the anchor patch (R = 1).
+        edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
+        carriers: per patch the ruling that its radius is measured at (R = k).
+        arcs: rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
+    """
+
+    feature: PanelFeature
+    values: Array
+    anchor: Rulings
+    edges: Rulings
+    carriers: Rulings
+    arcs: Rulings
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points of the panels that follow the numbers.
+
+    Attributes:
+        position: (panels, R, 3).
+        jacobian: (panels, R, 3, N) or None without derivatives.
+    """
+
+    position: Array
+    jacobian: Array | None

@@ -1,0 +1,122 @@
+"""From a reference to a result: the method, and another feature for panels that need one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from cadpanel.arrays import IntArray
+from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.feature_choice import Choice, can_be_built
+from cadpanel.fitting.measures.fit import measure
+from cadpanel.fitting.measures.verdict import keeps_limits
+from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.local import fit_local
+from cadpanel.fitting.methods.method import Fitted
+from cadpanel.fitting.methods.two_stage import fit_two_stage
+from cadpanel.fitting.problem import pose
+from cadpanel.fitting.result import FitResult, Progress
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.reference.model import Reference
+
+# How often panels may be given a closer feature because closing the seams took them too far.
+_PROMOTIONS = 3
+
+
+# How often they may be given another one because nothing could be built of them.
+_REPLACEMENTS = 8
+
+
+def fit(reference: Reference, settings: FitSettings | None = None, progress: Progress | None = None) -> FitResult:
+    """Fit all panels of a reference.
+
+    Args:
+        reference: what is to be approximated.
+        settings: how; by default concurrent plane-cone-plane with gaps of at most 1 mm.
+        progress: told of every round of the concurrent fit.
+
+    Raises:
+        PanelError: a panel's faces are nothing that the feature could approximate.
+        SettingsError: no starting values are known for the feature.
+    """
+    began = time.perf_counter()
+    how = settings or FitSettings()
+    if not how.automatic:
+        features = [how.feature_for(len(panel.edges)) for panel in reference.panels]
+        return _fit(reference, how, features, began, progress)
+    choice = Choice(reference, how)
+    result = _fit(reference, how, choice.features(), began, progress)
+    # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better, and those
+    # that cannot be built any more another one.
+    # The last result that can be built stands.
+    buildable: FitResult | None = None
+    promotions = replacements = 0
+    while True:
+        lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
+        if not len(lost):
+            buildable = result
+            if result.tolerance_met or promotions == _PROMOTIONS:
+                break
+            promotions += 1
+            changed = choice.promote(_offenders(result))
+        else:
+            if replacements == _REPLACEMENTS:
+                break
+            replacements += 1
+            changed = choice.forbid(lost)
+        if not changed:
+            break
+        result = _fit(reference, how, choice.features(), began, progress)
+    return buildable or result
+
+
+def _fit(
+    reference: Reference,
+    how: FitSettings,
+    features: Sequence[PanelFeature],
+    began: float,
+    progress: Progress | None,
+) -> FitResult:
+    """Fit panels that have these features."""
+    posed, starts = pose(reference, features, how.blend)
+    local = fit_local(posed, reference, starts, how)
+
+    def tell(round_: int, excess: float) -> None:
+        if progress is not None:
+            progress("concurrent", round_, excess)
+
+    staged = fit_two_stage(posed, local.unknowns, how)
+    chosen: Fitted = {
+        "local": lambda: local,
+        "two_stage": lambda: staged,
+        "concurrent": lambda: fit_concurrent(posed, local.unknowns, how, tell),
+    }[how.method]()
+    measures = measure(posed, reference, chosen.unknowns)
+    return FitResult(
+        reference=reference,
+        settings=how,
+        shapes=panel_shapes(posed, reference, chosen.unknowns),
+        measures=measures,
+        local=measure(posed, reference, local.unknowns),
+        two_stage=measure(posed, reference, staged.unknowns),
+        tolerance_met=keeps_limits(measures, how),
+        starts=chosen.starts,
+        agreed=chosen.agreed,
+        iterations=chosen.iterations,
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _offenders(result: FitResult) -> IntArray:
+    """Indices of the panels that break a limit, or meet another one in a seam that stays open."""
+    m, how = result.measures, result.settings
+    beyond = np.zeros(len(m.lengths), dtype=bool)
+    if how.max_deviation is not None:
+        beyond |= m.max_deviation > how.max_deviation
+    beyond |= (m.drift_along > how.drift_along * m.lengths) | (m.drift_across > how.drift_across * m.lengths)
+    for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
+        beyond[list(seam.panels)] |= gap > how.gap_tolerance
+    return np.flatnonzero(beyond)

@@ -1,0 +1,1 @@
+"""Many fits of one reference, held against each other."""

@@ -13,6 +13,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
 from cadpanel.brep.names import call_panels
+from cadpanel.brep.shape_maps import ShapeSet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +117,7 @@ class Model:
         found: list[ModelFace] = []
         for index, (part, panel) in enumerate(zip(self.parts, self.panel_names(), strict=True)):
             solids = [shape for solid in shapes_of(part.shape, TopAbs_SOLID) for shape in shapes_of(solid, TopAbs_FACE)]
-            bounding = {hash(face) for face in solids}
+            bounding = ShapeSet(solids)
             for face, label in zip(shapes_of(part.shape, TopAbs_FACE), part.face_labels, strict=True):
                 found.append(
                     ModelFace(
@@ -124,7 +125,7 @@ class Model:
                         part=index,
                         label=label.over(part.label),
                         face=TopoDS.Face_s(face),
-                        of_solid=hash(face) in bounding,
+                        of_solid=face in bounding,
                         names=(label.name, *part.names) if label.name else part.names,
                         panel=panel,
                     )

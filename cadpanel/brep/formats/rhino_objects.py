@@ -18,7 +18,7 @@ from OCP.gp import gp_GTrsf
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.formats.opennurbs import ConversionError
-from cadpanel.brep.model import Label
+from cadpanel.brep.model import Label, children, compound_of
 from cadpanel.errors import ReferenceFileError
 
 Array = NDArray[np.float64]
@@ -83,9 +83,12 @@ def put(shape: TopoDS_Shape, matrix: Array) -> TopoDS_Shape:
     for row in range(3):
         for column in range(4):
             map_.SetValue(row + 1, column + 1, float(matrix[row, column]))
-    modifier = BRepTools_Modifier(shape)
+    # In a group, as the kernel reverses a mirrored face that is part of one, but not a lone one.
+    group = compound_of([shape])
+    modifier = BRepTools_Modifier(group)
     modifier.Perform(BRepTools_GTrsfModification(map_))
-    return modifier.ModifiedShape(shape)
+    (placed,) = children(modifier.ModifiedShape(group))
+    return placed
 
 
 class _Walk:

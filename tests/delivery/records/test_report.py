@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from cadpanel.delivery.records.comparison import read_comparison, write_comparison
 from cadpanel.delivery.records.report import SummaryModel, read_report, write_report
 from cadpanel.errors import DeliveryError
-from tests.delivery.records import SUMMARY, a_comparison, a_report
+from tests.delivery.records.known_records import SUMMARY, a_comparison, a_report
 
 # The contract with other programs: keys may be added but not renamed.
 CONTRACT = {

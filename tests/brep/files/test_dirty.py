@@ -18,7 +18,7 @@ from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.skin.face_cleanup import find_doubles
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.test_network import across, quads, write_mesh
+from tests.brep.cutting.test_by_network import across, quads, write_mesh
 from tests.model_files import STRIP, Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_face
 

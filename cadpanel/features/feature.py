@@ -13,6 +13,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.independence import refuse_dependent
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, chain_edges
+from cadpanel.features.patch_checks import check_patch
 from cadpanel.features.patches import Patch
 from cadpanel.features.rulings import Cuts, Points, Walk
 from cadpanel.features.walk import end_points, walk
@@ -61,15 +62,13 @@ class Feature:
         """Lay out the numbers, and refuse a chain in which some of them depend on the others.
 
         Raises:
-            SettingsError: there is no patch, a number is none, or numbers depend on each other; the message names them.
+            SettingsError: there is no patch, one lacks what the package asks of it, a number is none, or numbers
+                depend on each other; the message names them.
         """
         if not 1 <= len(patches) <= MOST_PATCHES:
             raise SettingsError(f"a feature has between 1 and {MOST_PATCHES} patches, not {len(patches)}")
         for patch in patches:
-            if isinstance(patch, type) or not (hasattr(patch, "kind") and hasattr(patch, "carry")):
-                raise SettingsError(
-                    f"a feature is made of patches like Plane(), Cone() or Cylinder(), not of {patch!r}"
-                )
+            check_patch(patch)
         word: object = name
         if word is not None and not (isinstance(word, str) and word.strip() and word.isprintable()):
             raise SettingsError(f"the name of a feature must be a word that can be printed, not {name!r}")
@@ -115,6 +114,16 @@ class Feature:
     def corner_count(self) -> int:
         """Number of corners."""
         return 2 * (len(self.patches) + 1)
+
+    @property
+    def cut_numbers(self) -> IntArray:
+        """(2, 3) where position, skew and tilt of both cut planes stand among `numbers`."""
+        return np.arange(len(self.numbers) - 6, len(self.numbers), dtype=np.intp).reshape(2, 3)
+
+    @property
+    def four_sided(self) -> bool:
+        """A chain has two ends and two sides."""
+        return True
 
     def in_units(self, length: float) -> Self:
         """The same feature with lengths counted in units of `length` mm."""

@@ -75,21 +75,20 @@ class Polygon:
         """One from each corner to the next."""
         return polygon_edges(self.corner_count)
 
+    @property
+    def cut_numbers(self) -> IntArray:
+        """(0, 3) a polygon has edges all round and no ends that a plane could cut."""
+        return np.empty((0, 3), dtype=np.intp)
+
+    @property
+    def four_sided(self) -> bool:
+        """A polygon's edges are alike: none is an end or a side."""
+        return False
+
     def patch_slice(self, patch: int) -> slice:
-        """A plane alone has no numbers of its own.
-
-        Raises:
-            TypeError: always.
-        """
-        raise TypeError(f"patch {patch} of a polygon has no numbers of its own")
-
-    def cut_slice(self, end: int) -> slice:
-        """A polygon has edges all round and no ends.
-
-        Raises:
-            TypeError: always.
-        """
-        raise TypeError(f"a polygon has no end {end} that a plane could cut")
+        """Empty: the plane's numbers are those of where it stands."""
+        del patch
+        return slice(0, 0)
 
     def in_units(self, length: float) -> Self:
         """The same feature: it fixes no length."""
@@ -126,7 +125,7 @@ class Polygon:
         plane = Rulings(p, axes[:, None, :, 0], axes[:, None, :, 1], axes[:, None, :, 2], twist)
         empty = np.zeros((panels, 0, 3))
         none = Rulings(empty, empty, empty, empty, None if twist is None else twist[:, :0])
-        return Walk(self, values, plane, none, plane, none)
+        return Walk(self, values, (), plane, none, plane, none)
 
     def corners(self, walked: Walk) -> Points:
         """The corners (n, corners, 3) of walked panels."""

@@ -58,7 +58,7 @@ def _patches(walked: Walk, panel: int, length: float) -> tuple[Patch, ...]:
         if spec.kind == "plane":
             patches.append(PlanePatch())
             continue
-        radius, half_angle, sweep = walked.values[panel, walked.feature.patch_slice(i)]
+        radius, half_angle, sweep = walked.dimensions[i].values[panel]
         patches.append(
             ConePatch(radius=radius * length, half_angle=float(half_angle), sweep=float(sweep), kind=spec.kind)
         )

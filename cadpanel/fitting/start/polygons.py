@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from cadpanel.fitting.samples import SampleArrays
-from cadpanel.fitting.start.frames import Frames
+from cadpanel.features.polygon import Polygon
+from cadpanel.fitting.start.frames import Frames, Given
 from cadpanel.geometry.vectors import cross
-from cadpanel.reference.model import PanelReference
 
 
-def start_polygons(panels: Sequence[PanelReference], samples: SampleArrays, length: float) -> Frames:
+def start_polygons(_feature: Polygon, given: Given) -> Frames:
     """Frames and numbers (n, 3 + 2 corners) of panels with equally many corners."""
+    panels, samples, length = given.panels, given.samples, given.length
     weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
     origins = np.einsum("pm,pmx->px", weights, samples.points)
     off = samples.points - origins[:, None]

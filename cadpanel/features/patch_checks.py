@@ -47,7 +47,8 @@ def check_patch(patch: Any) -> None:
     except TypeError as error:
         raise _refused(patch, "cannot be a key of a dictionary: make it a frozen dataclass") from error
     _check_numbers(patch)
-    _check_dimensions(patch)
+    with np.errstate(all="ignore"):
+        _check_dimensions(patch)
 
 
 def _refused(patch: object, why: str) -> SettingsError:
@@ -80,7 +81,7 @@ def _check_dimensions(patch: Patch) -> None:
     rates = found.by_numbers()
     if np.shape(rates)[1:] != (size, count) or len(rates) not in (1, len(wanted)):
         raise _refused(patch, f"has 'dimensions' whose rates are {np.shape(rates)}, not {(len(wanted), size, count)}")
-    if patch.kind == "cylinder" and not _held_at_zero(patch) and found.values[:, 1].any():
+    if patch.kind == "cylinder" and patch.dimensions(_held(patch, np.array(values))).values[:, 1].any():
         raise _refused(patch, "is called a cylinder and has a half angle that is not 0")
     if not _agree(patch.numbers_for(found.values), values):
         raise _refused(patch, "has 'numbers_for' that do not give back the numbers whose 'dimensions' they are given")
@@ -94,10 +95,10 @@ def _check_dimensions(patch: Patch) -> None:
         )
 
 
-def _held_at_zero(patch: Patch) -> bool:
-    """Whether the half angle is a number that is fixed at 0, as that of `Cylinder` is."""
-    rates = patch.dimensions(patch.numbers_for(_CONES.copy())).by_numbers()[0, 1]
-    return all(number.fixed == 0.0 for number, rate in zip(patch.numbers(), rates, strict=True) if rate != 0.0)
+def _held(patch: Patch, values: Array) -> Array:
+    """The values with what the author holds in its place."""
+    fixed = [number.fixed for number in patch.numbers()]
+    return np.array([[own if at is None else at for own, at in zip(row, fixed, strict=True)] for row in values])
 
 
 def _agree(one: Array, other: Array) -> bool:

@@ -10,7 +10,8 @@ from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
 from cadpanel.features.rulings import Walk
 from cadpanel.geometry.frames import cayley
-from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
+from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 
 # Every feature that has a name; of the cone splines two.
 NAMES = [*CATALOGUE, "cone-spline-4", "cone-spline-6"]

@@ -10,13 +10,16 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
+from cadpanel.features.chain_shapes import chain_shapes
 from cadpanel.features.independence import refuse_dependent
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, chain_edges
 from cadpanel.features.patch_checks import check_patch
 from cadpanel.features.patches import Patch
+from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Cuts, Points, Walk
 from cadpanel.features.walk import end_points, walk
+from cadpanel.geometry.shape import PanelShape
 
 MOST_PATCHES = 64
 
@@ -175,3 +178,7 @@ class Feature:
     def arcs(self, walked: Walk) -> Points:
         """The arc points (n, arcs, 3) of walked panels."""
         return end_points(walked, walked.arcs)
+
+    def shapes(self, walked: Walk, placed: Placed) -> list[PanelShape]:
+        """Walked panels in the coordinates of the reference's file, mm."""
+        return chain_shapes(walked, placed)

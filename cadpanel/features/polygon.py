@@ -13,8 +13,10 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
+from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
+from cadpanel.geometry.shape import PolygonShape
 
 MOST_CORNERS = 64
 
@@ -145,3 +147,11 @@ class Polygon:
         """No arc points (n, 0, 3): all edges are straight."""
         none = np.zeros((len(walked.values), 0, 3))
         return Points(none, None if walked.anchor.twist is None else np.zeros((*none.shape, walked.values.shape[1])))
+
+    def shapes(self, walked: Walk, placed: Placed) -> list[PolygonShape]:
+        """Walked panels in the coordinates of the reference's file, mm."""
+        outlines, normals = placed.points(self.corners(walked).position), placed.directions(walked.anchor.n)[:, 0]
+        return [
+            PolygonShape(name=name, feature=self.name, outline=outlines[i], normal=normals[i])
+            for i, name in enumerate(placed.names)
+        ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, Self
 
@@ -9,6 +10,8 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge
 from cadpanel.features.patches import Dimensions, Patch
+from cadpanel.features.placed import Placed
+from cadpanel.geometry.panel import Panel
 
 Cuts = Literal["mitre", "upright", "parallel", "square"]
 
@@ -94,6 +97,10 @@ class PanelFeature(Protocol):
 
     def arcs(self, walked: Walk) -> Points:
         """The arc points (n, arcs, 3) of walked panels."""
+        ...
+
+    def shapes(self, walked: Walk, placed: Placed) -> Sequence[Panel]:
+        """Walked panels in the coordinates of the reference's file, mm."""
         ...
 
 

@@ -13,7 +13,7 @@ from cadpanel.fitting.problem import pose
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.instances import random_shapes

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import Tilt
-from cadpanel.features.feature import Feature
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 class FitKeywords(TypedDict, total=False):
     """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
 
-    feature: str | Feature
+    feature: str | PanelFeature
     max_deviation: float | None
     tilt: Tilt
     method: Method

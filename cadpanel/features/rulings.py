@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol, Self
+from typing import Literal, Protocol, Self, runtime_checkable
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.numbers import Number
@@ -16,6 +16,7 @@ from cadpanel.geometry.panel import Panel
 Cuts = Literal["mitre", "upright", "parallel", "square"]
 
 
+@runtime_checkable
 class PanelFeature(Protocol):
     """What fits, terms and seams ask of anything that can be fitted to one panel: a chain or a polygon.
 

@@ -9,7 +9,6 @@ from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt, for_corners
-from cadpanel.features.feature import Feature
 from cadpanel.features.patch_checks import greatest_radius
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
@@ -69,7 +68,7 @@ class FitSettings:
         seed: of the perturbations.
     """
 
-    feature: str | Feature = "plane-cone-plane"
+    feature: str | PanelFeature = "plane-cone-plane"
     max_deviation: float | None = None
     tilt: Tilt = "free"
     method: Method = "concurrent"
@@ -89,7 +88,7 @@ class FitSettings:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
         named: object = self.feature
-        if not isinstance(named, str | Feature):
+        if not isinstance(named, str | PanelFeature):
             raise SettingsError(f"a feature is named, or is a Feature, not {named!r}")
         if isinstance(self.feature, str) and self.feature != AUTO:
             for_corners(self.feature, tilt=self.tilt)
@@ -162,7 +161,7 @@ def require(what: str, value: object, *, least: float, most: float = math.inf, u
         raise SettingsError(f"the {what} must be {span}, not {number:g}{unit}")
 
 
-def _require_rollable(feature: Feature, min_radius: float) -> None:
+def _require_rollable(feature: PanelFeature, min_radius: float) -> None:
     """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
     for i, patch in enumerate(feature.patches):
         if patch.kind != "plane" and greatest_radius(patch) < min_radius:

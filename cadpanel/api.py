@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import Tilt
-from cadpanel.features.feature import Feature
+from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import FitSettings, Method, Weights
-from cadpanel.geometry.chain_checks import SkinSide
-from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import By, ReferenceSettings
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 class FitKeywords(TypedDict, total=False):
     """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
 
-    feature: str | Feature
+    feature: str | PanelFeature
     max_deviation: float | None
     tilt: Tilt
     method: Method
@@ -216,7 +216,7 @@ def deliver(
 
 
 def to_cadquery(
-    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> cadquery.Workplane:
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
@@ -236,11 +236,11 @@ def to_cadquery(
 
 
 @overload
-def to_build123d(panels: AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
+def to_build123d(panels: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
 @overload
 def to_build123d(panels: FitResult, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> build123d.Compound:
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
@@ -256,13 +256,13 @@ def to_build123d(
     from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
     built = _build(panels, thickness, skin_side)
-    if isinstance(panels, PanelShape | PolygonShape):
-        return to_build123d_part(built[0].solid, panels.name)
-    return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+    if isinstance(panels, FitResult):
+        return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+    return to_build123d_part(built[0].solid, panels.name)
 
 
 def write_step(
-    panels: FitResult | AnyShape,
+    panels: FitResult | Panel,
     path: str | Path,
     *,
     thickness: float = 3.0,
@@ -292,14 +292,14 @@ def write_step(
 
 
 def _build(
-    panels: FitResult | AnyShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
+    panels: FitResult | Panel, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.sheets import build_panels
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return build_panels([panels] if isinstance(panels, PanelShape | PolygonShape) else panels.shapes, sheet)
+    return build_panels(panels.shapes if isinstance(panels, FitResult) else [panels], sheet)
 
 
-def _title(panels: FitResult | AnyShape) -> str:
-    return panels.name if isinstance(panels, PanelShape | PolygonShape) else Path(panels.reference.source).stem
+def _title(panels: FitResult | Panel) -> str:
+    return Path(panels.reference.source).stem if isinstance(panels, FitResult) else panels.name

@@ -16,7 +16,7 @@ from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.settings import Schema, SheetSettings
 from cadpanel.fitting.settings import FitSettings, Method
-from cadpanel.geometry.chain_checks import SkinSide
+from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.reference.settings import ReferenceSettings
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone, two-stage", "Fit all at once"

@@ -7,8 +7,8 @@ from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import require
-from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET
+from cadpanel.geometry.sheet_checks import SkinSide
 
 Schema = Literal["AP242", "AP214"]
 

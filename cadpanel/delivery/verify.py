@@ -16,7 +16,7 @@ from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, read_report
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.chain_checks import SkinSide
+from cadpanel.geometry.sheet_checks import SkinSide
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

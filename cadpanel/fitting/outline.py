@@ -6,8 +6,8 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
-from cadpanel.features.polygon import Polygon
-from cadpanel.fitting.start.chains import Start, end_plane
+from cadpanel.fitting.start.begin import Start
+from cadpanel.fitting.start.chains import end_plane
 from cadpanel.geometry.vectors import dot
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.terms.limits.corner_drift import Limited, Outline
@@ -24,7 +24,7 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
     for i, panel in enumerate(reference.panels):
         feature = layout.feature_of[i]
         count = feature.corner_count
-        if isinstance(feature, Polygon):
+        if not feature.four_sided:
             corners[i, :count] = (panel.corners.reshape(-1, 3) - begin.origins[i]) @ begin.axes[i] / begin.length
             across.set(i, np.arange(count), np.broadcast_to(np.eye(3), (count, 3, 3)))
             continue

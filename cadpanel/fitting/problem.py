@@ -17,7 +17,7 @@ from cadpanel.fitting.bounds import LEAST_WIDTH, natural_bounds
 from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.start.chains import Start, start
+from cadpanel.fitting.start.begin import Start, start
 from cadpanel.reference.model import Reference
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
 
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
@@ -35,7 +35,7 @@ class FitResult:
 
     reference: Reference
     settings: FitSettings
-    shapes: tuple[AnyShape, ...]
+    shapes: tuple[Panel, ...]
     measures: Measures
     local: Measures
     two_stage: Measures
@@ -45,7 +45,7 @@ class FitResult:
     iterations: int
     seconds: float
 
-    def shape(self, name: str) -> AnyShape:
+    def shape(self, name: str) -> Panel:
         """The panel of that name.
 
         Raises:

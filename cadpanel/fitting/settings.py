@@ -9,7 +9,7 @@ from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt, for_corners
-from cadpanel.features.feature import Feature
+from cadpanel.features.patch_checks import greatest_radius
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
 
@@ -68,7 +68,7 @@ class FitSettings:
         seed: of the perturbations.
     """
 
-    feature: str | Feature = "plane-cone-plane"
+    feature: str | PanelFeature = "plane-cone-plane"
     max_deviation: float | None = None
     tilt: Tilt = "free"
     method: Method = "concurrent"
@@ -88,13 +88,13 @@ class FitSettings:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
         named: object = self.feature
-        if not isinstance(named, str | Feature):
+        if not isinstance(named, str | PanelFeature):
             raise SettingsError(f"a feature is named, or is a Feature, not {named!r}")
-        if not isinstance(self.feature, Feature) and self.feature != AUTO:
+        if isinstance(self.feature, str) and self.feature != AUTO:
             for_corners(self.feature, tilt=self.tilt)
         if self.tilt not in get_args(Tilt):
             raise SettingsError(f"tilt must be 'free' or 'fixed', not '{self.tilt}'")
-        if isinstance(self.feature, Feature) and self.tilt == "fixed":
+        if not isinstance(self.feature, str) and self.tilt == "fixed":
             raise SettingsError("a composed feature says itself how its ends are cut; leave the tilt out")
         if self.method not in get_args(Method):
             raise SettingsError(f"there is no method '{self.method}'; choose one of: {', '.join(get_args(Method))}")
@@ -108,7 +108,7 @@ class FitSettings:
         require("drift along the strip", self.drift_along, least=1e-4, most=0.5)
         require("drift across the free edges", self.drift_across, least=1e-4, most=0.5)
         require("least radius", self.min_radius, least=0.1, unit=" mm")
-        if isinstance(self.feature, Feature):
+        if not isinstance(self.feature, str):
             _require_rollable(self.feature, self.min_radius)
         require_whole("number of restarts", self.restarts, least=0, most=1000)
         require_whole("seed", self.seed, least=0)
@@ -127,13 +127,13 @@ class FitSettings:
     @property
     def feature_name(self) -> str:
         """The feature as reports call it."""
-        return self.feature.name if isinstance(self.feature, Feature) else self.feature
+        return self.feature if isinstance(self.feature, str) else self.feature.name
 
     def feature_for(self, corners: int) -> PanelFeature:
         """The feature of a panel with so many corners, where all panels have the same."""
-        if isinstance(self.feature, Feature):
-            return self.feature
-        return for_corners(self.feature, tilt=self.tilt)(corners)
+        if isinstance(self.feature, str):
+            return for_corners(self.feature, tilt=self.tilt)(corners)
+        return self.feature
 
 
 def require_whole(what: str, value: object, *, least: int, most: float = math.inf) -> None:
@@ -161,16 +161,14 @@ def require(what: str, value: object, *, least: float, most: float = math.inf, u
         raise SettingsError(f"the {what} must be {span}, not {number:g}{unit}")
 
 
-def _require_rollable(feature: Feature, min_radius: float) -> None:
+def _require_rollable(feature: PanelFeature, min_radius: float) -> None:
     """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
-    for number in feature.numbers:
-        if number.name.endswith(": radius"):
-            given = (number.fixed,) if number.fixed is not None else (number.lower, number.upper)
-            if max(abs(value) for value in given) < min_radius:
-                raise SettingsError(
-                    f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
-                    f"radius of {min_radius:g} mm: ask for a larger one, or allow a tighter one"
-                )
+    for i, patch in enumerate(feature.patches):
+        if patch.kind != "plane" and greatest_radius(patch) < min_radius:
+            raise SettingsError(
+                f"the radius of patch {i} of '{feature.name}' is tighter than the least radius of {min_radius:g} mm: "
+                "ask for a larger one, or allow a tighter one"
+            )
 
 
 def _require_weights(value: object) -> None:

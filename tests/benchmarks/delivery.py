@@ -42,7 +42,8 @@ from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import AnyShape, ConePatch
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.reference.model import Reference
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
@@ -67,7 +68,7 @@ def strip(panels: int) -> Lip:
     )
 
 
-def local_shapes(reference: Reference) -> tuple[AnyShape, ...]:
+def local_shapes(reference: Reference) -> tuple[Panel, ...]:
     """Every panel fitted alone: enough to have something to build."""
     posed, begin = pose(reference, [FitSettings().feature_for(4)] * len(reference.panels))
     return panel_shapes(posed, reference, fit_local(posed, reference, begin, FitSettings()).unknowns)
@@ -90,7 +91,7 @@ def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helpe
     return certify(folder / PANELS, folder / SKINS, expected, seams, helper)
 
 
-def _kinds(shape: AnyShape) -> tuple[PatchKind, ...]:
+def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
     cones: dict[bool, PatchKind] = {True: "cone", False: "cylinder"}
     return tuple(cones[patch.half_angle != 0.0] if isinstance(patch, ConePatch) else "plane" for patch in shape.patches)
 

@@ -21,7 +21,8 @@ from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
 from cadpanel.fitting.run import fit
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel

@@ -12,7 +12,8 @@ from cadpanel.features.catalogue import feature
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.shapes import edge_curves, panel_shapes
-from cadpanel.geometry.shape import ConePatch, PanelShape, PolygonShape, edge_corners
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from tests.chains import CHAINS, FEATURES, POLYGONS, made_problem, mixed_unknowns, problem_of, random_unknowns
 
 ROUNDING = 1e-12

@@ -12,7 +12,7 @@ from cadpanel.fitting.methods.two_stage import fit_two_stage
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.known_panels import alone, flipped, moved, posed, renumbered, ring

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.geometry.chain_checks import check_buildable, check_skin
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.sheet_checks import check_buildable
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 
@@ -60,20 +60,20 @@ def test_too_few_rulings_are_refused():
 
 def test_frames_must_be_orthonormal():
     shape = folded_panel()
-    check_skin(replace(shape, directions=shape.directions * (1.0 + 1e-11)))
+    replace(shape, directions=shape.directions * (1.0 + 1e-11)).check()
     refused(replace(shape, directions=shape.directions * (1.0 + 1e-9)), "orthonormal")
 
 
 def test_rulings_must_follow_from_the_patches():
     shape = folded_panel()
     aside = np.array([[0.0] * 3, [0.0] * 3, [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    check_skin(replace(shape, points=shape.points + 1e-9 * aside))
+    replace(shape, points=shape.points + 1e-9 * aside).check()
     refused(replace(shape, points=shape.points + 1e-7 * aside), "walk the rulings")
 
 
 def test_a_point_may_slide_along_its_ruling():
     shape = folded_panel()
-    check_skin(replace(shape, points=shape.points + np.array([[1.0], [20.0], [-30.0], [4.0]]) * shape.directions))
+    replace(shape, points=shape.points + np.array([[1.0], [20.0], [-30.0], [4.0]]) * shape.directions).check()
 
 
 @pytest.mark.parametrize(("end_radius", "passes"), [(0.2, True), (0.05, False), (-5.0, False)])
@@ -84,10 +84,10 @@ def test_an_apex_inside_the_panel_is_refused(end_radius, passes, side):
     # Both cuts square to the ruling, so that its own end is the tightest place.
     shape = folded_panel(chain="c", widths=(), turns=(), radius=side * radius, half_angle=half_angle, sweep=side * 1.0)
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         with pytest.raises(PanelError, match="apex of patch 1 falls inside"):
-            check_skin(shape)
+            shape.check()
 
 
 @pytest.mark.parametrize(("tilt", "passes"), [(41.0, True), (43.0, False), (89.0, False)])
@@ -100,10 +100,10 @@ def test_a_cut_too_oblique_for_an_ellipse_is_refused(tilt, passes):
     cut = math.cos(math.radians(tilt)) * axis + math.sin(math.radians(tilt)) * radial
     shape = replace(shape, cut_normals=np.array([cut, cut]))
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         with pytest.raises(PanelError, match="no ellipse"):
-            check_skin(shape)
+            shape.check()
 
 
 @pytest.mark.parametrize(("tilt", "passes"), [(79.0, True), (81.0, False), (90.0, False), (120.0, False)])
@@ -121,10 +121,10 @@ def test_cuts_that_cross_at_an_edge_are_refused(left, passes):
     slope = (1000.0 - left) / (2.0 * 300.0)
     shape = folded_panel(chain="p", widths=(300.0,), turns=(0.0,), cut_normals=((1.0, slope, 0.0), (1.0, -slope, 0.0)))
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         with pytest.raises(PanelError, match="cross inside the panel"):
-            check_skin(shape)
+            shape.check()
 
 
 @pytest.mark.parametrize(("left", "passes"), [(0.2, True), (0.05, False), (-20.0, False)])
@@ -138,17 +138,17 @@ def test_cuts_that_cross_only_between_two_rulings_are_refused(left, passes):
     cuts /= np.linalg.norm(cuts, axis=1, keepdims=True)
     shape = replace(shape, cut_normals=cuts)
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         with pytest.raises(PanelError, match="on patch 1"):
-            check_skin(shape)
+            shape.check()
 
 
 @pytest.mark.parametrize(("turn", "passes"), [(0.37, True), (0.39, False)])
 def test_a_flange_that_turns_inside_out_is_refused(turn, passes):
     shape = folded_panel(turns=(0.0, turn))
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         refused(shape, "flange of patch 3 turns inside out")
 
@@ -161,7 +161,7 @@ def test_a_sweep_against_the_radius_is_refused():
 def test_a_fold_of_half_a_turn_is_refused(sweep, passes):
     shape = folded_panel(sweep=sweep)
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         refused(shape, "less than 180")
 
@@ -186,7 +186,7 @@ def test_a_fold_that_runs_into_itself_is_refused(last_width, passes):
         chain="pcpcp", radius=50.0, sweep=3.0, widths=(300.0, 200.0, last_width), turns=(0.0, 0.0, 0.0)
     )
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         refused(shape, "runs into itself")
 
@@ -195,7 +195,7 @@ def test_a_fold_that_runs_into_itself_is_refused(last_width, passes):
 def test_map_coordinates_are_refused(distance, passes):
     shape = moved(folded_panel(), (distance, 0.0, 0.0))
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         refused(shape, "local origin")
 
@@ -208,7 +208,7 @@ def test_a_patch_as_flat_as_a_plane_is_refused():
 def test_a_patch_without_width_is_refused(sweep, passes):
     shape = folded_panel(sweep=sweep)
     if passes:
-        check_skin(shape)
+        shape.check()
     else:
         refused(shape, "wide at the")
 

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section, radius_range
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from tests.shapes import folded_panel, random_panel
 
 HALF_ANGLES = [0.0, 1e-13, 1e-12, 1e-9, 1e-6, 5e-6, 1e-4, 1e-2, 0.1, -1e-12, -1e-6, -1e-2, -0.1]

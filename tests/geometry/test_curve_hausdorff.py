@@ -7,7 +7,8 @@ import pytest
 
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
 from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from tests.shapes import folded_panel, moved, random_panel
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from cadpanel.geometry.cone import cone_distance, plane_distance
 from cadpanel.geometry.end_curves import EndCurves, closest, seam_gap
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import dot
 from tests.known_panels import end_curve
 from tests.shapes import CHAINS, folded_panel, random_panel

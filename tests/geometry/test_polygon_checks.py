@@ -9,12 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.geometry.chain_checks import check_buildable, check_skin, other_face
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH, THICKEST_SHEET, THINNEST_SHEET
 from cadpanel.geometry.polygon_checks import FLATNESS, check_polygon, polygon_area
 from cadpanel.geometry.shape import PolygonShape, edge_corners
-from cadpanel.geometry.slender_cones import straighten
-from cadpanel.geometry.volume import sheet_volume, skin_area
+from cadpanel.geometry.sheet_checks import check_buildable, other_face
+from cadpanel.geometry.volume import sheet_volume
 from tests.instances import random_polygon
 from tests.shapes import folded_panel
 
@@ -33,12 +32,12 @@ def square(side=1000.0):
 
 def passes(shape):
     check_polygon(shape)
-    check_skin(shape)
+    shape.check()
     check_buildable(shape, 3.0)
 
 
 def refused(shape, reason):
-    for check in (check_polygon, check_skin, lambda one: check_buildable(one, 3.0)):
+    for check in (check_polygon, PolygonShape.check, lambda one: check_buildable(one, 3.0)):
         with pytest.raises(PanelError, match=reason) as caught:
             check(shape)
         assert caught.value.panel == shape.name
@@ -49,7 +48,7 @@ def refused(shape, reason):
 def test_areas_and_volumes_are_those_of_closed_forms():
     triangle = flat((0.0, 0.0), (300.0, 0.0), (0.0, 400.0))
     assert polygon_area(triangle) == pytest.approx(60_000.0, rel=1e-14)
-    assert skin_area(square()) == pytest.approx(1e6, rel=1e-14)
+    assert square().area() == pytest.approx(1e6, rel=1e-14)
     for skin_side in ("outer", "inner"):
         assert sheet_volume(triangle, 2.5, skin_side) == pytest.approx(150_000.0, rel=1e-14)
 
@@ -82,7 +81,7 @@ def test_the_other_face_is_parallel_and_as_large(seed, count, distance):
 
 def test_a_polygon_has_no_cones_to_straighten():
     shape = random_polygon(1, 5)
-    straight = straighten(shape)
+    straight = shape.straightened()
     assert straight.shape is shape
     assert (straight.patches, straight.largest_move) == ((), 0.0)
     assert [patch.kind for patch in shape.patches] == ["plane"]

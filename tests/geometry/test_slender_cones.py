@@ -5,9 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.chain_checks import check_skin
-from cadpanel.geometry.shape import ConePatch
-from cadpanel.geometry.slender_cones import straighten
+from cadpanel.geometry.patches import ConePatch
 from tests.shapes import CHAINS, random_panel
 
 
@@ -18,8 +16,8 @@ from tests.shapes import CHAINS, random_panel
 )
 def test_a_tiny_half_angle_becomes_a_cylinder_without_moving_the_panel_visibly(seed, chain, half_angle):
     shape = random_panel(seed, chain=chain, half_angle=half_angle, length=4000.0)
-    result = straighten(shape)
-    check_skin(result.shape)
+    result = shape.straightened()
+    result.shape.check()
     cones = [patch for patch in result.shape.patches if isinstance(patch, ConePatch)]
     assert len(result.patches) == len(cones)
     assert all(patch.half_angle == 0.0 and patch.kind == "cylinder" for patch in cones)
@@ -30,12 +28,12 @@ def test_a_tiny_half_angle_becomes_a_cylinder_without_moving_the_panel_visibly(s
 @pytest.mark.parametrize("half_angle", [0.0, 5.1e-6, -5.1e-6, 1e-2])
 def test_other_panels_stay_as_they_are(half_angle):
     shape = random_panel(3, half_angle=half_angle)
-    result = straighten(shape)
+    result = shape.straightened()
     assert result.shape is shape
     assert result.patches == ()
     assert result.largest_move == 0.0
 
 
 def test_straightening_twice_changes_nothing_more():
-    once = straighten(random_panel(3, half_angle=1e-6)).shape
-    assert straighten(once).shape is once
+    once = random_panel(3, half_angle=1e-6).straightened().shape
+    assert once.straightened().shape is once

@@ -289,7 +289,8 @@ def _turned_end_for_end(of: Feature, unknowns: Array) -> Array:
     last = len(of.patches) - 1
     for i, curved in enumerate(of.curved):
         signs = [1.0, -1.0, 1.0] if curved else [1.0, -1.0]
-        values[of.patch_slice(i)] = old[of.patch_slice(last - i)] * signs
+        far = of.patches[last - i].dimensions(old[None, of.patch_slice(last - i)])
+        values[of.patch_slice(i)] = of.patches[i].numbers_for(far.values * signs)[0]
     for end in (0, 1):
         values[of.cut_slice(end)] = old[of.cut_slice(1 - end)] * [-1.0, 1.0, -1.0]
     turned: Array = values[of.free]

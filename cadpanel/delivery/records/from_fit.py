@@ -23,7 +23,6 @@ from cadpanel.delivery.records.report import (
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet
-from cadpanel.features.feature import Feature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
@@ -65,7 +64,7 @@ def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSet
     return SettingsModel(
         cadpanel_version=version("cadpanel"),
         feature=settings.feature_name,
-        composition=tuple(map(repr, settings.feature.patches)) if isinstance(settings.feature, Feature) else None,
+        composition=None if isinstance(settings.feature, str) else tuple(map(repr, settings.feature.patches)),
         max_deviation=settings.max_deviation,
         tilt=settings.tilt,
         method=settings.method,

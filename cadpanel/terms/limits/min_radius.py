@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.features.distance import patch_outer
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.frames import point_velocity
@@ -32,10 +33,9 @@ class RadiusLimit(LackLimit):
 
 def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> tuple[Array, Array]:
     edges, rulings = walked.edges, walked.edges.p.shape[1]
-    at = walked.feature.patch_slice(patch).start
     which = np.array([patch, patch + 1, patch, patch + 1])
     places = which + np.array([0, 0, rulings, rulings])
-    radius, angle = walked.values[:, at, None], walked.values[:, at + 1, None]
+    radius, angle = (walked.dimensions[patch].values[:, i, None] for i in (0, 1))
     sign, widening = np.sign(radius), np.tan(angle)
     height = dot(corners.position[:, places] - edges.p[:, which], edges.t[:, which])
     radii = sign * (radius + height * widening)
@@ -46,6 +46,6 @@ def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> t
     # The corner lies on the ruling, so turning the ruling does not change its height to first order.
     moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
     slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
-    slope[..., at] += 1.0
-    slope[..., at + 1] += height * (1.0 + widening**2)
+    inner = np.stack([np.ones_like(height), height * (1.0 + widening**2)], axis=-1)
+    slope += inner @ patch_outer(walked, patch)[:, 6:]
     return radii, sign[..., None] * slope

@@ -3,8 +3,7 @@
 import pytest
 
 from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part, to_cadquery_shape, to_workplane
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import random_panel
 

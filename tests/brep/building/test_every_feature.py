@@ -10,14 +10,14 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_panel, volume_of
+from cadpanel.brep.building.sheet import build_panel, build_skin, volume_of
 from cadpanel.brep.proof.shape_facts import inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.kink import edge_angles, surface_normals
-from cadpanel.geometry.shape import ConePatch, PolygonShape
-from cadpanel.geometry.volume import sheet_volume, skin_area
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PolygonShape
+from cadpanel.geometry.volume import sheet_volume
 from tests.instances import NAMES, TAPERED, random_polygon, random_shapes
 
 RELATIVE = 1e-12
@@ -66,7 +66,7 @@ def check_exact(shape, thickness, skin_side, relative=RELATIVE):
     assert exactly_valid(built.skin)
     assert BRep_Tool.IsClosed_s(TopoDS.Shell_s(TopExp_Explorer(built.solid, TopAbs_SHELL).Current()))
     assert volume_of(built.solid) == pytest.approx(sheet_volume(own, thickness, skin_side), rel=relative)
-    assert area_of(built.skin) == pytest.approx(skin_area(own), rel=RELATIVE)
+    assert area_of(built.skin) == pytest.approx(own.area(), rel=RELATIVE)
     solid, skin = inspect("solid", built.solid), inspect("skin", built.skin)
     walls = len(own.outline) if isinstance(own, PolygonShape) else 4
     expected = kinds(own)

@@ -10,15 +10,13 @@ from OCP.TopAbs import TopAbs_SHELL
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_panel, build_solid, volume_of
+from cadpanel.brep.building.sheet import build_panel, build_skin, build_solid, volume_of
 from cadpanel.brep.proof.shape_facts import inspect
 from cadpanel.errors import PanelError
-from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.kink import edge_angles, surface_normals
-from cadpanel.geometry.shape import ConePatch
-from cadpanel.geometry.slender_cones import straighten
-from cadpanel.geometry.volume import sheet_volume, skin_area
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import CHAINS, folded_panel, random_panel
 
 HALF_ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 5e-6, 1e-4, 1e-2, 0.1]
@@ -41,13 +39,13 @@ def shell_of(solid):
 
 
 def check(shape, thickness, skin_side="outer"):
-    built = straighten(shape).shape
+    built = shape.straightened().shape
     solid, skin = build_solid(shape, thickness, skin_side), build_skin(shape)
     assert exactly_valid(solid)
     assert exactly_valid(skin)
     assert BRep_Tool.IsClosed_s(shell_of(solid))
     assert volume_of(solid) == pytest.approx(sheet_volume(built, thickness, skin_side), rel=RELATIVE)
-    assert area_of(skin) == pytest.approx(skin_area(built), rel=RELATIVE)
+    assert area_of(skin) == pytest.approx(built.area(), rel=RELATIVE)
     for facts in (inspect("solid", solid), inspect("skin", skin)):
         angles = edge_angles(facts.straight_edges, facts.edge_surfaces)
         assert angles[angles < 0.1].max(initial=0.0) < TANGENCY

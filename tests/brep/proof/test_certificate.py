@@ -15,14 +15,13 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.brep.proof import parallel
 from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
 from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.shape import ConePatch, PanelShape
-from cadpanel.geometry.slender_cones import straighten
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import folded_panel, moved, random_panel
 
@@ -31,7 +30,7 @@ GAP = 0.25
 
 
 def expected(shape: PanelShape) -> ExpectedPanel:
-    built = straighten(shape).shape
+    built = shape.straightened().shape
     kinds: list[PatchKind] = [
         "plane" if not isinstance(patch, ConePatch) else "cone" if patch.half_angle else "cylinder"
         for patch in built.patches

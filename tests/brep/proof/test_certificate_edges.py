@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
 from cadpanel.brep.step.file import write_step
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.volume import sheet_volume
 from tests.instances import random_polygon
 from tests.shapes import folded_panel, moved
@@ -19,7 +19,7 @@ GAP = 0.25
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def expected(shape: AnyShape) -> ExpectedPanel:
+def expected(shape: PanelShape | PolygonShape) -> ExpectedPanel:
     kinds: list[PatchKind] = ["cylinder" if isinstance(patch, ConePatch) else "plane" for patch in shape.patches]
     if isinstance(shape, PolygonShape):
         far = np.array([[shape.outline[0] - THICKNESS * shape.normal, shape.normal]])

@@ -12,8 +12,8 @@ from cadpanel.fitting.bends.asked import Blend, blends_of
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.polyline import arc_length
-from cadpanel.geometry.shape import ConePatch
 from tests.instances import random_polygon
 from tests.known_panels import alone, sampled
 from tests.shapes import folded_panel, random_panel

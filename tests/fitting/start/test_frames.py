@@ -7,7 +7,7 @@ from cadpanel.features.catalogue import feature, polygon
 from cadpanel.features.layout import Layout
 from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
-from cadpanel.fitting.start.chains import start
+from cadpanel.fitting.start.begin import start
 from cadpanel.fitting.start.frames import reframe
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import cross

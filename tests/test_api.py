@@ -11,8 +11,8 @@ import cadquery as cq
 import pytest
 
 import cadpanel as cp
-from cadpanel.api import FitKeywords
 from cadpanel.brep.step.file import read_step_shapes
+from cadpanel.fitting.settings import FitKeywords
 from tests.delivered import fitted, strip
 from tests.instances import random_polygon
 

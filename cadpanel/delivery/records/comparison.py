@@ -10,6 +10,9 @@ from pydantic import Field, model_validator
 from cadpanel.delivery.records.jsonfile import NonNegative, Record, read_json, write_json
 from cadpanel.delivery.records.report import NonNegativeCount, ReferenceModel, SummaryModel, UnitsModel, WeightsModel
 
+OF_A_COLUMN = ("feature", "max_deviation", "method")
+"""The settings of a fit that a comparison chooses itself, for each column its own."""
+
 
 class ColumnModel(Record):
     """One feature fitted by one method.

@@ -13,9 +13,8 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
 from cadpanel.features.numbers import Number
+from cadpanel.terms.limits.catalogue import LIMITS
 
-# A flange keeps this width in its middle, mm.
-LEAST_WIDTH = 1.0
 # Cones open by no more than this, radians: sheet is rolled to cones, not to discs.
 STEEPEST = np.radians(30.0)
 # Radius and sweep of a patch keep this share of what they start with, and a sweep stays below half a turn.
@@ -51,8 +50,9 @@ def _natural(number: Number, begun: Array, length: float, *, flat: bool) -> tupl
     """(n,) bounds of one number of n panels, from what it starts with (starts, n)."""
     what = number.name.rpartition(" ")[2]
     free = np.full(begun.shape[1], np.inf)
-    if what == "width":
-        return np.full(begun.shape[1], LEAST_WIDTH / length), free
+    least = [bound for limit in LIMITS if (bound := limit.bound(number)) is not None]
+    if least:
+        return np.full(begun.shape[1], max(least) / length), free
     if what == "half_angle":
         return np.full(begun.shape[1], -STEEPEST), np.full(begun.shape[1], STEEPEST)
     if what in ("radius", "sweep"):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypedDict, get_args
@@ -13,6 +12,10 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
 from cadpanel.setting import Option, Range, check_ranges, require, setting
+from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
+from cadpanel.terms.limits.limit import limit_setting
+from cadpanel.terms.limits.min_radius import MinRadius
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""
@@ -71,12 +74,6 @@ class Weights:
         return Weights(**found)
 
 
-def _share(option: str, percent: float) -> float:
-    if not (math.isfinite(percent) and 0.01 <= percent <= 50.0):
-        raise SettingsError(f"{option} must be between 0.01 and 50 percent of the panel's length, not {percent:g}.")
-    return percent / 100.0
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitSettings:
     """How to fit.
@@ -127,31 +124,9 @@ class FitSettings:
             help="Weigh squares against each other instead of holding a gap tolerance.",
         ),
     )
-    drift_along: float = setting(
-        0.05,
-        within=Range(what="drift along the strip", least=1e-4, most=0.5),
-        option=Option(
-            read=_share,
-            show=lambda share: 100.0 * share,
-            metavar="PERCENT",
-            help="How far corners may move along the strip, of the length.",
-        ),
-    )
-    drift_across: float = setting(
-        0.02,
-        within=Range(what="drift across the free edges", least=1e-4, most=0.5),
-        option=Option(
-            read=_share,
-            show=lambda share: 100.0 * share,
-            metavar="PERCENT",
-            help="How far corners may move across it, which people see.",
-        ),
-    )
-    min_radius: float = setting(
-        10.0,
-        within=Range(what="least radius", least=0.1, unit=" mm"),
-        option=Option(metavar="MM", help="Tightest radius that the shop can roll."),
-    )
+    drift_along: float = limit_setting(DriftAlong)
+    drift_across: float = limit_setting(DriftAcross)
+    min_radius: float = limit_setting(MinRadius)
     blend: tuple[Blend, ...] = setting(
         (),
         option=Option(
@@ -195,13 +170,19 @@ class FitSettings:
                 f"the feature '{AUTO}' and a largest deviation go together: the first is chosen by the second"
             )
         if isinstance(self.feature, Feature):
-            _require_rollable(self.feature, self.min_radius)
+            for limit in LIMITS:
+                limit.check_feature(self.feature, limit.allowed(self))
         _require_weights(self.weights)
         object.__setattr__(self, "blend", blends_of(self.blend))
         if self.blend and self.automatic:
             raise SettingsError(f"with the feature '{AUTO}' it is not known which panels have a blend: name a feature")
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
+
+    @property
+    def allowed(self) -> dict[str, float]:
+        """Every limit by its name, mm or shares of a panel's length; also those that are no setting."""
+        return {limit.name: limit.allowed(self) for limit in LIMITS}
 
     @property
     def automatic(self) -> bool:
@@ -218,18 +199,6 @@ class FitSettings:
         if isinstance(self.feature, Feature):
             return self.feature
         return for_corners(self.feature, tilt=self.tilt)(corners)
-
-
-def _require_rollable(feature: Feature, min_radius: float) -> None:
-    """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
-    for number in feature.numbers:
-        if number.name.endswith(": radius"):
-            given = (number.fixed,) if number.fixed is not None else (number.lower, number.upper)
-            if max(abs(value) for value in given) < min_radius:
-                raise SettingsError(
-                    f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
-                    f"radius of {min_radius:g} mm: ask for a larger one, or allow a tighter one"
-                )
 
 
 def _require_weights(value: object) -> None:

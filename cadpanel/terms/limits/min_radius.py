@@ -6,21 +6,87 @@ is least at a corner, so that is where it is held.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.errors import SettingsError
+from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.frames import point_velocity
+from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.geometry.vectors import dot
-from cadpanel.terms.limits.lower_bound import LackLimit
+from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.lower_bound import LackTerm
+from cadpanel.terms.term import HeldTerm
 
 
-class RadiusLimit(LackLimit):
+class MinRadius(Limit):
+    """The tightest normal radius of a cone or cylinder that the shop can roll, mm."""
+
+    name = "min_radius"
+    what = "least radius"
+    default = 10.0
+    least = 0.1
+    help = "Tightest radius that the shop can roll."
+    at_least = True
+    remedy = "a tighter radius"
+    rows = (Row("least_radius", "Tightest radius, mm", "{:.1f}"),)
+
+    def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
+        """See `Limit.held`; a `LackTerm` has a margin of its own."""
+        del margin
+        least, groups = allowed[self.name] / panels.place.length, panels.layout.groups
+        return [
+            RadiusTerm(group, place, panels.layout.panels, least)
+            for place, group in enumerate(groups)
+            if any(group.feature.curved)
+        ]
+
+    def measure(self, measured: Measured) -> Array:
+        """See `Limit.measure`."""
+        return np.array([_tightest(shape) for shape in measured.shapes])
+
+    def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
+        """See `Limit.missed`."""
+        del length
+        return f"the least radius of {allowed:g} mm is not met: panel '{panel}' gets as tight as {value:.2f} mm"
+
+    def check_feature(self, feature: Feature, allowed: float) -> None:
+        """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
+        for number in feature.numbers:
+            if number.name.endswith(": radius"):
+                given = (number.fixed,) if number.fixed is not None else (number.lower, number.upper)
+                if max(abs(value) for value in given) < allowed:
+                    raise SettingsError(
+                        f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
+                        f"radius of {allowed:g} mm: ask for a larger one, or allow a tighter one"
+                    )
+
+
+def _tightest(shape: AnyShape) -> float:
+    """The least normal radius at the corners of a panel's curved patches, mm; infinite where none is curved."""
+    if not isinstance(shape, PanelShape):
+        return math.inf
+    height = np.einsum("erx,rx->er", shape.corners() - shape.points, shape.directions)
+    return min(
+        (
+            float((math.copysign(1.0, p.radius) * (p.radius + height[:, i : i + 2] * math.tan(p.half_angle))).min())
+            for i, p in enumerate(shape.patches)
+            if isinstance(p, ConePatch)
+        ),
+        default=math.inf,
+    )
+
+
+class RadiusTerm(LackTerm):
     """Holds the normal radii at the corners of the curved patches of one group of panels above a least one."""
 
     def __init__(self, group: Group, place: int, panels: int, least: float) -> None:
-        """See `LackLimit`; the feature has a curved patch."""
+        """See `LackTerm`; the feature has a curved patch."""
         self._curved = [i for i, curved in enumerate(group.feature.curved) if curved]
         super().__init__(group, place, panels, least, 4 * len(self._curved))
 

@@ -8,7 +8,8 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import COMPARISON, delivery_folder
-from cadpanel.delivery.records.comparison import OF_A_COLUMN, ComparisonModel, write_comparison
+from cadpanel.delivery.records.comparison import ComparisonModel, write_comparison
+from cadpanel.delivery.records.settings import OF_A_COLUMN
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
 

@@ -14,10 +14,10 @@ from cadpanel.delivery.records.from_fit import (
     panel_records,
     reference_record,
     seam_records,
-    settings_record,
     solve_record,
 )
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, TimingModel, write_report
+from cadpanel.delivery.records.settings import settings_record
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet, Progress, build_panels, say_nothing

@@ -63,8 +63,11 @@ def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (put("panels", 1, "feature", value="plane-cylinder-plane"), "Panel 'N-02': the report calls it"),
         (put("settings", "thickness", value=2.99), "Panel 'N-01': the far face"),
         (put("settings", "skin_side", value="inner"), "Panel 'N-01': the far face"),
-        (put("settings", "drift_along", value=1e-4), "a drift along in it is"),
-        (put("settings", "drift_across", value=1e-4), "a drift across in it is"),
+        (put("settings", "drift_along", value=1e-4), "% for the drift along the strip, where 0.01 %"),
+        (
+            put("settings", "drift_across", value=1e-4),
+            "% for the drift across the free edges, where",
+        ),
         (put("summary", "tolerance_met", value=False), "calls its tolerance not met"),
         (put("summary", "rms_deviation", value=lambda v: v / 9.0), "rms_deviation"),
         (put("summary", "local_rms_multiple", value=1.0), "local_rms_multiple"),

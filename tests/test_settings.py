@@ -5,19 +5,21 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, replace
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from cadpanel.cli.compare import compare
 from cadpanel.cli.fit import fit
 from cadpanel.cli.inspect import inspect
+from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.records.comparison import read_comparison, write_comparison
-from cadpanel.delivery.records.report import read_report
-from cadpanel.delivery.records.settings import OF_A_COLUMN, ComparisonSettingsModel, SettingsModel
+from cadpanel.delivery.records.from_fit import reference_record
+from cadpanel.delivery.records.report import ReferenceModel, read_report
+from cadpanel.delivery.records.settings import OF_A_COLUMN, ComparisonSettingsModel, SettingsModel, settings_record
 from cadpanel.delivery.records.table1 import comparison_record
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.features.feature import Feature
@@ -145,8 +147,6 @@ def test_settings_are_read_back_from_a_comparison_as_they_were_asked_for(tmp_pat
 
 
 def test_a_fit_is_run_again_from_its_report_with_the_same_numbers(tmp_path: Path) -> None:
-    from cadpanel.delivery.deliver import deliver
-
     sheet = SheetSettings(thickness=2.0, skin_side="inner", schema="AP214")
     for name in ("first", "again"):
         settings = ASKED if name == "first" else asked_again(read_report(tmp_path / "first" / "report.json").settings)
@@ -159,9 +159,25 @@ def test_a_fit_is_run_again_from_its_report_with_the_same_numbers(tmp_path: Path
     assert SheetSettings(thickness=kept.thickness, skin_side=kept.skin_side, schema=kept.step_schema) == sheet
 
 
-def test_a_composed_feature_is_told_by_its_patches() -> None:
-    from cadpanel.delivery.records.settings import settings_record
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ReferenceSettings(),
+        ReferenceSettings(divide=9, lip=200.0, unit="m", faces=("1-3", "layer=Skin, north"), seam_tolerance=0.5),
+        ReferenceSettings(grid=(20, 10), by="parameter", junctions=True),
+        ReferenceSettings(stations=(1200.0, 2400.0), spine=Path("spine.step")),
+        ReferenceSettings(network=Path("curves.3dm")),
+        ReferenceSettings(mesh=Path("roof.obj")),
+    ],
+    ids=lambda settings: settings.way or "whole",
+)
+def test_how_a_reference_was_read_is_read_back_from_the_record(settings: ReferenceSettings) -> None:
+    record = reference_record(replace(strip(), settings=settings))
+    reading = ReferenceModel.model_validate_json(record.model_dump_json()).reading
+    assert ReferenceSettings(**cast("dict[str, Any]", reading)) == settings
 
+
+def test_a_composed_feature_is_told_by_its_patches() -> None:
     composed = Feature(Plane(width=200.0), Cone(), Plane(), name="bracket")
     record = settings_record(strip(), FitSettings(feature=composed), SheetSettings())
     assert record.feature == "bracket"

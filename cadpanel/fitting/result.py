@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.fitting.measures.fit import Measures
-from cadpanel.fitting.measures.verdict import asked
+from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.model import Reference
@@ -80,7 +80,7 @@ class FitResult:
                 f"the gap tolerance of {tolerance:g} mm is not met: the seam between '{a}' and '{b}' stays open by "
                 f"{gaps[worst]:.2f} mm"
             )
-        limit, most = max(asked(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
+        limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
         panel = int(np.argmax(limit.excess(m, most)))
         if not limit.kept(m, most)[panel]:
             value, length = float(limit.measure(m)[panel]), float(m.lengths[panel])

@@ -11,7 +11,7 @@ from cadpanel.arrays import IntArray
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.measures.verdict import asked, keeps_limits
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
 from cadpanel.fitting.methods.concurrent import fit_concurrent
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.methods.method import Fitted
@@ -115,7 +115,7 @@ def _offenders(result: FitResult) -> IntArray:
     beyond = np.zeros(len(m.lengths), dtype=bool)
     if how.max_deviation is not None:
         beyond |= m.max_deviation > how.max_deviation
-    for limit, allowed in asked(how):
+    for limit, allowed in limits_of(how):
         beyond |= ~limit.kept(m, allowed)
     for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
         beyond[list(seam.panels)] |= gap > how.gap_tolerance

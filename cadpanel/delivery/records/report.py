@@ -25,7 +25,7 @@ from cadpanel.delivery.records.settings import SettingsModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
 Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
-Setting = str | int | float | tuple[str | int | float, ...]
+Setting = bool | str | int | float | tuple[str | int | float, ...]
 Positive = Annotated[float, Field(gt=0.0)]
 
 

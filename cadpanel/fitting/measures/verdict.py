@@ -19,11 +19,11 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
     return bool(
         measures.max_corner_gap <= settings.gap_tolerance
         and measures.max_seam_gap <= settings.gap_tolerance
-        and all(limit.kept(measures, allowed).all() for limit, allowed in asked(settings))
+        and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
 
 
-def asked(settings: FitSettings) -> Iterator[tuple[Limit, float]]:
+def limits_of(settings: FitSettings) -> Iterator[tuple[Limit, float]]:
     """Every limit with what the settings allow."""
     allowed = settings.allowed
     for limit in LIMITS:

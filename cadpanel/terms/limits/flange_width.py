@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -11,8 +10,8 @@ from cadpanel.arrays import Array
 from cadpanel.features.layout import Group
 from cadpanel.features.numbers import Number
 from cadpanel.features.rulings import Points, Walk
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.geometry.vectors import cross, dot
+from cadpanel.terms.limits.chains import chains_of
 from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
@@ -41,7 +40,11 @@ class FlangeWidth(Limit):
 
     def measure(self, measured: Measured) -> Array:
         """See `Limit.measure`."""
-        return np.array([_narrowest(shape) for shape in measured.shapes])
+        least = np.full(len(measured.shapes), np.inf)
+        for chains in chains_of(measured.shapes):
+            if len(chains.curved):
+                least[chains.panels] = chains.widths[:, :, chains.flat].min(axis=(1, 2), initial=np.inf)
+        return least
 
     def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
         """See `Limit.missed`."""
@@ -51,16 +54,6 @@ class FlangeWidth(Limit):
     def bound(self, number: Number) -> float | None:
         """The width that a flange has in its middle."""
         return self.default if number.name.rpartition(" ")[2] == "width" else None
-
-
-def _narrowest(shape: AnyShape) -> float:
-    """The least width of a panel's flat patches at either end, mm; infinite where none lies beside a curved one."""
-    if not isinstance(shape, PanelShape) or not any(isinstance(patch, ConePatch) for patch in shape.patches):
-        return math.inf
-    corners = shape.corners()
-    widths = np.einsum("erx,rx->er", corners[:, 1:] - corners[:, :-1], shape.binormals()[:-1])
-    flat = [i for i, patch in enumerate(shape.patches) if not isinstance(patch, ConePatch)]
-    return float(widths[:, flat].min(initial=math.inf))
 
 
 class WidthTerm(LackTerm):

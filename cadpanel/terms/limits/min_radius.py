@@ -6,7 +6,6 @@ is least at a corner, so that is where it is held.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -17,8 +16,8 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.frames import point_velocity
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.geometry.vectors import dot
+from cadpanel.terms.limits.chains import chains_of
 from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
@@ -48,7 +47,13 @@ class MinRadius(Limit):
 
     def measure(self, measured: Measured) -> Array:
         """See `Limit.measure`."""
-        return np.array([_tightest(shape) for shape in measured.shapes])
+        least = np.full(len(measured.shapes), np.inf)
+        for chains in chains_of(measured.shapes):
+            for patch in chains.curved:
+                radius, widening = chains.radius[:, patch, None, None], np.tan(chains.half_angle[:, patch, None, None])
+                radii = np.sign(radius) * (radius + chains.heights[:, :, patch : patch + 2] * widening)
+                least[chains.panels] = np.minimum(least[chains.panels], radii.min(axis=(1, 2)))
+        return least
 
     def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
         """See `Limit.missed`."""
@@ -65,21 +70,6 @@ class MinRadius(Limit):
                         f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
                         f"radius of {allowed:g} mm: ask for a larger one, or allow a tighter one"
                     )
-
-
-def _tightest(shape: AnyShape) -> float:
-    """The least normal radius at the corners of a panel's curved patches, mm; infinite where none is curved."""
-    if not isinstance(shape, PanelShape):
-        return math.inf
-    height = np.einsum("erx,rx->er", shape.corners() - shape.points, shape.directions)
-    return min(
-        (
-            float((math.copysign(1.0, p.radius) * (p.radius + height[:, i : i + 2] * math.tan(p.half_angle))).min())
-            for i, p in enumerate(shape.patches)
-            if isinstance(p, ConePatch)
-        ),
-        default=math.inf,
-    )
 
 
 class RadiusTerm(LackTerm):

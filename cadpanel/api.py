@@ -6,22 +6,18 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
+from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.catalogue import Tilt
-from cadpanel.features.rulings import PanelFeature
-from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
-from cadpanel.fitting.settings import FitSettings, Method, Weights
+from cadpanel.fitting.settings import FitKeywords, FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.reference.model import Reference
-from cadpanel.reference.settings import By, ReferenceSettings
+from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
 
 if TYPE_CHECKING:
     import build123d
@@ -34,40 +30,6 @@ if TYPE_CHECKING:
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
     from cadpanel.studies.table1 import Progress as CompareProgress
-
-
-class FitKeywords(TypedDict, total=False):
-    """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
-
-    feature: str | PanelFeature
-    max_deviation: float | None
-    tilt: Tilt
-    method: Method
-    gap_tolerance: float
-    drift_along: float
-    drift_across: float
-    min_radius: float
-    blend: str | Blend | Sequence[str | Blend]
-    weights: Weights | None
-    restarts: int
-    seed: int
-
-
-class ReferenceKeywords(TypedDict, total=False):
-    """The fields of `ReferenceSettings`, as keywords of `read` and `inspect`."""
-
-    seam_tolerance: float
-    unit: str | None
-    faces: str | Sequence[str] | None
-    divide: int | None
-    lip: float | None
-    grid: tuple[int, int] | None
-    by: By
-    stations: Sequence[float] | None
-    spine: str | Path | None
-    network: str | Path | None
-    mesh: str | Path | None
-    junctions: bool
 
 
 def read(

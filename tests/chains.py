@@ -18,7 +18,7 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import dot
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.limits.corner_drift import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State

@@ -15,9 +15,8 @@ from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
 from cadpanel.features.patches import DIMENSIONS, Kind, Patch
 from cadpanel.features.rulings import PanelFeature
+from cadpanel.terms.limits.catalogue import LIMITS
 
-# A flange keeps this width in its middle, mm.
-LEAST_WIDTH = 1.0
 # Cones open by no more than this, radians: sheet is rolled to cones, not to discs.
 STEEPEST = np.radians(30.0)
 # Radius and sweep of a patch keep this share of what they start with, and a sweep stays below half a turn.
@@ -74,16 +73,17 @@ def _of_dimensions(kind: Kind, begun: Array, length: float) -> tuple[Array, Arra
     upper = np.full(begun.shape[1:], np.inf)
     lower = -upper
     for column, what in enumerate(DIMENSIONS[kind]):
-        if what == "width":
-            lower[:, column] = LEAST_WIDTH / length
+        least = [bound for limit in LIMITS if (bound := limit.bound(what)) is not None]
+        if least:
+            lower[:, column] = max(least) / length
         if what == "half_angle":
             lower[:, column], upper[:, column] = -STEEPEST, STEEPEST
         if what in ("radius", "sweep"):
             concave = begun[0, :, column] < 0.0
-            least = LEAST_SHARE * np.abs(begun[:, :, column]).min(axis=0)
+            smallest = LEAST_SHARE * np.abs(begun[:, :, column]).min(axis=0)
             most = WIDEST_SWEEP if what == "sweep" else LARGEST_RADIUS / length
-            lower[:, column] = np.where(concave, -most, least)
-            upper[:, column] = np.where(concave, -least, most)
+            lower[:, column] = np.where(concave, -most, smallest)
+            upper[:, column] = np.where(concave, -smallest, most)
     return lower, upper
 
 

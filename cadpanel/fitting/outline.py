@@ -10,7 +10,7 @@ from cadpanel.fitting.start.begin import Start
 from cadpanel.fitting.start.chains import end_plane
 from cadpanel.geometry.vectors import dot
 from cadpanel.reference.model import PanelReference, Reference
-from cadpanel.terms.limits.corner_drift import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.state import State
 
 

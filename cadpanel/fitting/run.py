@@ -11,7 +11,7 @@ from cadpanel.arrays import IntArray
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.measures.verdict import keeps_limits
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
 from cadpanel.fitting.methods.concurrent import fit_concurrent
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.methods.method import Fitted
@@ -19,7 +19,6 @@ from cadpanel.fitting.methods.two_stage import fit_two_stage
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.reference.model import Reference
 
 # How often panels may be given a closer feature because closing the seams took them too far.
@@ -98,7 +97,7 @@ def _fit(
     return FitResult(
         reference=reference,
         settings=how,
-        shapes=panel_shapes(posed, reference, chosen.unknowns),
+        shapes=measures.shapes,
         measures=measures,
         local=measure(posed, reference, local.unknowns),
         two_stage=measure(posed, reference, staged.unknowns),
@@ -116,7 +115,8 @@ def _offenders(result: FitResult) -> IntArray:
     beyond = np.zeros(len(m.lengths), dtype=bool)
     if how.max_deviation is not None:
         beyond |= m.max_deviation > how.max_deviation
-    beyond |= (m.drift_along > how.drift_along * m.lengths) | (m.drift_across > how.drift_across * m.lengths)
+    for limit, allowed in limits_of(how):
+        beyond |= ~limit.kept(m, allowed)
     for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
         beyond[list(seam.panels)] |= gap > how.gap_tolerance
     return np.flatnonzero(beyond)

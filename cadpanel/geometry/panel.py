@@ -7,7 +7,7 @@ kernel's faces or the rows of a record, has one entry for each class.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, Protocol, Self, TypeVar
+from typing import Generic, Protocol, Self, TypeVar, runtime_checkable
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.patches import Patch
@@ -85,6 +85,7 @@ class Straightened(Generic[Shape]):
     largest_move: float
 
 
+@runtime_checkable
 class Chain(Protocol):
     """Patches between rulings, cut by a plane at either end; see `PanelShape`."""
 

@@ -33,8 +33,7 @@ from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
-from cadpanel.delivery.folder import PANELS, SKINS
-from cadpanel.delivery.outputs.step_files import write_skins, write_solids
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_skins, write_solids
 from cadpanel.delivery.records.from_fit import FOUR_EDGES
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet, build_panels

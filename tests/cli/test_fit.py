@@ -167,7 +167,7 @@ def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema) -> None:
         write_solids(path, panels[:-1], title, schema)
 
-    monkeypatch.setattr("cadpanel.delivery.deliver.write_solids", lose_one)
+    monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")
     assert answer.code == 1
     assert "Panel 'N-03' is missing among the solids." in answer.err

@@ -11,7 +11,8 @@ import pytest
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import PANELS, REPORT, SKINS
+from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.from_fit import panel_records
 from cadpanel.delivery.records.from_shape import patch_models
@@ -27,7 +28,7 @@ from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel
 
-OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths")
+OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths", "shapes")
 
 
 # ------------------------------------------------------------------------------------------------------------- patches

@@ -17,8 +17,9 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.boundary import outline_distances, overhang
 from cadpanel.fitting.problem import Problem
-from cadpanel.fitting.shapes import edge_curves
+from cadpanel.fitting.shapes import edge_curves, panel_shapes
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
 from cadpanel.terms.seams import SeamBatch
 from cadpanel.terms.state import State
@@ -40,6 +41,7 @@ class Measures:
             whose ends cannot be told from its sides the whole drift.
         drift_across: (panels,) of the outer corner that drifted most across its free edge, mm.
         lengths: (panels,) the panels' lengths, mm.
+        shapes: the panels that were measured, for those limits that hold what is to be seen of a panel alone.
     """
 
     corner_gaps: tuple[Array, ...]
@@ -53,6 +55,7 @@ class Measures:
     drift_along: Array
     drift_across: Array
     lengths: Array
+    shapes: tuple[Panel, ...]
 
     @property
     def widest_corners(self) -> Array:
@@ -91,6 +94,7 @@ def measure(problem: Problem, reference: Reference, unknowns: Array) -> Measures
         drift_along=along,
         drift_across=across,
         lengths=problem.lengths * length,
+        shapes=panel_shapes(problem, reference, unknowns),
     )
 
 

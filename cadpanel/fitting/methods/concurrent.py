@@ -6,13 +6,14 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.fit import seam_gaps
-from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, Limit, balanced, drift_and_shop_limits, seam_terms
+from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, balanced, seam_terms
 from cadpanel.fitting.methods.method import Fitted, Progress
 from cadpanel.fitting.methods.weighted import weighted_objective
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
+from cadpanel.terms.term import HeldTerm
 
 # How often seams are tightened, and up to which excess that is worth trying. Arcs are held by their distances from the
 # other arc's cone and cut plane; on gently curved panels these meet at a small angle once the cut leans far, and what
@@ -45,11 +46,11 @@ def _concurrent(
     problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
 ) -> Fitted:
     if settings.weights is not None:
-        model = weighted_objective(problem, settings.weights)
+        model = weighted_objective(problem, settings.weights, settings)
         solution = levenberg_marquardt(model, start, Stopping(iterations=300))
         return Fitted(solution.unknowns, solution.iterations)
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
-    held: list[SeamTerm | Limit] = [*gaps, *drift_and_shop_limits(problem, settings)]
+    held: list[HeldTerm] = [*gaps, *problem.limits(settings, MARGIN)]
     model = Objective(problem, [problem.deviation, *held], coupled=True)
     found = balanced(problem, model, held, start, local=local, progress=progress)
     iterations = found.iterations
@@ -67,11 +68,11 @@ def _concurrent(
 
 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
-    """RMS deviation, and a large penalty for gaps and drifts that do not hold; the objective where weights rule."""
+    """RMS deviation, and a large penalty for gaps and limits that do not hold; the objective where weights rule."""
     if settings.weights is not None:
-        return float(weighted_objective(problem, settings.weights).cost(unknowns).sum())
+        return float(weighted_objective(problem, settings.weights, settings).cost(unknowns).sum())
     state = problem.state(unknowns)
-    held = [*seam_terms(problem, settings.gap_tolerance), *problem.drift_limits(settings, 0.0)]
+    held: list[HeldTerm] = [*seam_terms(problem, settings.gap_tolerance), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = float(np.sqrt(2.0 * problem.deviation.cost(state).sum() / problem.panels))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.methods.balance import balanced, drift_and_shop_limits
+from cadpanel.fitting.methods.balance import MARGIN, balanced
 from cadpanel.fitting.methods.method import Fitted
 from cadpanel.fitting.objective import Frozen, Objective
 from cadpanel.fitting.problem import Problem
@@ -20,6 +20,6 @@ def fit_two_stage(problem: Problem, local: Array, settings: FitSettings) -> Fitt
     gaps = problem.corner_gaps(settings.gap_tolerance)
     for gap in gaps:
         gap.hold.weight[:] = weights.gap / weights.deviation
-    limits = drift_and_shop_limits(problem, settings)
+    limits = problem.limits(settings, MARGIN)
     everything = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
     return balanced(problem, Frozen(everything, problem.placement_unknowns()), limits, local, local=local)

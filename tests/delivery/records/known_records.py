@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel
+from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
 from cadpanel.delivery.records.report import (
     BaselinesModel,
@@ -11,11 +11,11 @@ from cadpanel.delivery.records.report import (
     ReferenceModel,
     ReportModel,
     SeamModel,
-    SettingsModel,
     SolveModel,
     SummaryModel,
     TimingModel,
 )
+from cadpanel.delivery.records.settings import ComparisonSettingsModel, SettingsModel
 
 SUMMARY = SummaryModel(
     max_corner_gap=0.1,

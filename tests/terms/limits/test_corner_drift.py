@@ -8,11 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.features.cut_planes import cut_planes
-from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.vectors import dot
-from cadpanel.terms.limits.corner_drift import Limited
+from cadpanel.terms.outline import Limited
 from tests.chains import CHAINS, POLYGONS
-from tests.terms.models import Case, case_of, cost, mixed_case
+from tests.terms.models import Case, case_of, cost, drift_terms, mixed_case
 
 few = settings(max_examples=2)
 seeds = st.integers(0, 10_000)
@@ -20,7 +19,7 @@ seeds = st.integers(0, 10_000)
 
 def vectors_of(case):
     """Drifts along, across and whole, of all panels."""
-    along, across = case.problem.drift_limits(FitSettings(), 0.0)
+    along, across = drift_terms(case.problem)
     state = case.problem.state(case.unknowns)
     return along.vectors(state), across.vectors(state), case.problem.outline.drift(state)
 

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from cadpanel.brep.boundary import Edge
 from cadpanel.brep.clean import SkinFace
+from cadpanel.reference.order import order_in_space
 from cadpanel.reference.polyline import distances_to_curves, norm
 
 Array = NDArray[np.float64]
@@ -101,7 +102,7 @@ def surfaces_of(
     number, labels = connected_components(graph, directed=False)
     groups = [np.flatnonzero(labels == group).tolist() for group in range(number)]
     middles = np.array([_middle([faces[index] for index in group]) for group in groups])
-    order = np.lexsort([levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
+    order = order_in_space(middles, max(tolerance, 1.0)).tolist()
     names = _names([[faces[index] for index in groups[group]] for group in order])
     surfaces = []
     for name, group in zip(names, order, strict=True):
@@ -222,18 +223,6 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     weights = np.concatenate([face.samples.weights for face in faces])
     points = np.concatenate([face.samples.points for face in faces])
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
-
-
-def levels(values: Array, tolerance: float) -> NDArray[np.intp]:
-    """(n,) the rank of values, in which those that follow each other within a tolerance share one.
-
-    Rounding would part two that lie on either side of a half.
-    """
-    order = np.argsort(values, kind="stable")
-    steps = np.concatenate([[0], np.cumsum(np.diff(values[order]) > tolerance)])
-    levels = np.empty(len(values), dtype=np.intp)
-    levels[order] = steps
-    return levels
 
 
 def _names(groups: Sequence[Sequence[SkinFace]]) -> list[str]:

@@ -19,6 +19,7 @@ from cadpanel.brep.model import Model, ModelCurve
 from cadpanel.brep.polylines import joined
 from cadpanel.brep.smooth import Piece, piece_through, smooth_pieces
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.order import goes_backwards
 
 Array = NDArray[np.float64]
 
@@ -140,7 +141,7 @@ def chain(polylines: Sequence[Array]) -> Array | None:
         else:
             return None
     way = line[-1] - line[0]
-    return line[::-1] if way[np.abs(way).argmax()] < 0.0 else line
+    return line[::-1] if goes_backwards(way) else line
 
 
 def _joined(line: Array, other: Array, near: float) -> Array | None:

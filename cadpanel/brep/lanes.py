@@ -15,6 +15,7 @@ from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.brep.connect import Surface
 from cadpanel.brep.patch import Patch, equal_parts, lengths_along, rectangle
+from cadpanel.reference.order import EQUAL, goes_backwards
 from cadpanel.reference.polyline import norm
 
 Array = NDArray[np.float64]
@@ -199,7 +200,7 @@ def _turning_rates(patch: Patch) -> tuple[tuple[float, float], tuple[float, floa
 def _slow_axis(rates: tuple[float, float], lengths: tuple[float, float]) -> int:
     slow, fast = sorted(rates)
     if fast < STRAIGHT or fast < ALIKE * slow:
-        return int(lengths[1] > lengths[0])
+        return int((1.0 - EQUAL) * lengths[1] > lengths[0])
     return int(rates[1] < rates[0])
 
 
@@ -264,7 +265,4 @@ def _forwards(lanes: Lanes) -> Lanes:
             for side in (0.0, 1.0)
         ]
     ).mean(axis=0)
-    way = ends[1] - ends[0]
-    if way[np.abs(way).argmax()] >= -COMMON:
-        return lanes
-    return lanes.turned()
+    return lanes.turned() if goes_backwards(ends[1] - ends[0], COMMON) else lanes

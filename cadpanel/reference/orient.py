@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cadpanel.reference.contacts import SideContact
 from cadpanel.reference.model import PanelReference, Seam
+from cadpanel.reference.order import goes_backwards, order_in_space
 from cadpanel.reference.polyline import norm
 from cadpanel.reference.sheet import Sheet, turning
 
@@ -97,7 +98,7 @@ def align(
             neighbours[one].append((other, mine == theirs))
             neighbours[other].append((one, mine == theirs))
     middles = np.array([panel.corners.reshape(-1, 3).mean(axis=0) for panel in panels])
-    order = np.lexsort(np.round(middles / tolerance).T[::-1])
+    order = order_in_space(middles, tolerance)
     turned: dict[int, bool] = {}
     for start in order.tolist():
         if start in turned:
@@ -117,7 +118,7 @@ def align(
 def _points_backwards(panel: PanelReference) -> bool:
     """Tell whether the way from end 0 to end 1 goes against the axis that it follows most."""
     along = (panel.corners[1] - panel.corners[0]).mean(axis=0)
-    return bool(along[np.abs(along).argmax()] < 0.0)
+    return goes_backwards(along)
 
 
 def _turned_seam(seam: Seam, turned: dict[int, bool]) -> Seam:

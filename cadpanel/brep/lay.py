@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import BSpline, make_interp_spline
 
 from cadpanel.brep.feet import Search
+from cadpanel.brep.folds import turns_back
 from cadpanel.brep.patch import Patch, geometry
 from cadpanel.brep.slices import DEGREE, spline_curve
 from cadpanel.brep.smooth import CLOSE, Piece
@@ -85,6 +86,9 @@ def lay(patch: Patch, stretches: Sequence[Stretch]) -> list[TopoDS_Edge | None]:
         for (place, course), own in zip(courses.items(), parts, strict=True):
             segments = np.flatnonzero(drawn[place])
             off = _deviations(patch, course, own, segments)
+            back = np.flatnonzero(off > HALF)
+            line = course.stretch.line
+            off[back[turns_back(patch, line[segments[back]], own[back], line[segments[back] + 1])]] = 0.0
             del active[place]
             if off.max(initial=0.0) <= HALF:
                 found[place] = _edge(patch, course)

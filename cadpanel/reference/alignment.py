@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.geometry.order import goes_backwards, order_in_space
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import PanelReference, Seam
 from cadpanel.reference.oriented_panel import Sheet, turning
@@ -95,7 +96,7 @@ def align(
             neighbours[one].append((other, mine == theirs))
             neighbours[other].append((one, mine == theirs))
     middles = np.array([panel.corners.reshape(-1, 3).mean(axis=0) for panel in panels])
-    order = np.lexsort(np.round(middles / tolerance).T[::-1])
+    order = order_in_space(middles, tolerance)
     turned: dict[int, bool] = {}
     for start in order.tolist():
         if start in turned:
@@ -115,7 +116,7 @@ def align(
 def _points_backwards(panel: PanelReference) -> bool:
     """Tell whether the way from end 0 to end 1 goes against the axis that it follows most."""
     along = (panel.corners[1] - panel.corners[0]).mean(axis=0)
-    return bool(along[np.abs(along).argmax()] < 0.0)
+    return goes_backwards(along)
 
 
 def _turned_seam(seam: Seam, turned: dict[int, bool]) -> Seam:

@@ -170,8 +170,8 @@ def _crossings(search: Search, ends: Sequence[tuple[Run, int]], tolerance: float
     at = np.where(along, inner, outer)
     feet = search.feet(points(at), start)
     reached = feet.parameters
-    # The next point may lie by the border and not quite on it.
-    for index in np.setdiff1d(np.flatnonzero(~along & feet.by_border & ~feet.on_border), cut_short).tolist():
+    # The place is found from a hair inside the border, and the next point may lie by it: both are meant to be on it.
+    for index in np.setdiff1d(np.flatnonzero(~along & feet.by_border), cut_short).tolist():
         reached[index] = _clamped(reached[index], bounds)
     for index in np.flatnonzero(np.abs(reached - here).max(axis=1) > JUMP * np.ptp(bounds, axis=1).max()).tolist():
         reached[index] = _clamped(here[index], bounds)

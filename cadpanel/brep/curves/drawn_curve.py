@@ -19,6 +19,7 @@ from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Model, ModelCurve
 from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.errors import ReferenceFileError
+from cadpanel.geometry.order import goes_backwards
 
 # How closely one curve must begin where another one ends to follow it, as a part of the whole length.
 FOLLOWS = 1e-3
@@ -138,7 +139,7 @@ def chain(polylines: Sequence[Array]) -> Array | None:
         else:
             return None
     way = line[-1] - line[0]
-    return line[::-1] if way[np.abs(way).argmax()] < 0.0 else line
+    return line[::-1] if goes_backwards(way) else line
 
 
 def _joined(line: Array, other: Array, near: float) -> Array | None:

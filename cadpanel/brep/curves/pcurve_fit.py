@@ -12,6 +12,7 @@ from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import BSpline, make_interp_spline
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.curves.folds import turns_back
 from cadpanel.brep.curves.pieces import Piece
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.face_patch import Patch, geometry
@@ -85,6 +86,9 @@ def lay(patch: Patch, stretches: Sequence[Stretch]) -> list[TopoDS_Edge | None]:
         for (place, course), own in zip(courses.items(), parts, strict=True):
             segments = np.flatnonzero(drawn[place])
             off = _deviations(patch, course, own, segments)
+            back = np.flatnonzero(off > HALF)
+            line = course.stretch.line
+            off[back[turns_back(patch, line[segments[back]], own[back], line[segments[back] + 1])]] = 0.0
             del active[place]
             if off.max(initial=0.0) <= HALF:
                 found[place] = _edge(patch, course)

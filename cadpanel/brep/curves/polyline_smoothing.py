@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import BSpline, splprep
 
 from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.geometry.order import levels
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.vectors import norm, unit
 
@@ -21,6 +22,7 @@ FACET = 0.1
 # chamfered as it may be. (No outline of a panel shows edges that are shorter than a millimetre.)
 CORNER_LENGTH = 1.0
 CORNER_ANGLE = 20.0
+SAME_COSINE = 1e-9
 # Lengths of neighbouring segments differ by no more than this factor when a curve is fitted through their ends.
 GRADING = 2.0
 # Longer ones are halved as long as they are longer than this, mm, and this many times at most.
@@ -66,8 +68,8 @@ def corners(points: Array, turns: IntArray) -> BoolArray:
     cosines = np.sum(unit(here - before) * unit(after - here), axis=1)
     found = np.zeros(len(turns), dtype=np.bool_)
     # Beside a corner, to as far as it may be chamfered and beyond, the curve turns, too, when looked at so roughly: the
-    # sharpest turn stands for its neighbours.
-    for place in np.argsort(cosines, kind="stable").tolist():
+    # sharpest turn stands for its neighbours, and of those alike, as at both ends of a chamfer, the first.
+    for place in np.argsort(levels(cosines, SAME_COSINE), kind="stable").tolist():
         if cosines[place] > np.cos(np.radians(CORNER_ANGLE)):
             break
         first, last = np.searchsorted(at, [at[place] - 2.0 * CORNER_LENGTH, at[place] + 2.0 * CORNER_LENGTH])

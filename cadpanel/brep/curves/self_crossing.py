@@ -1,4 +1,7 @@
-"""Stretches that cross themselves, parted in every loop: the kernel never looks for where an edge crosses itself."""
+"""Stretches that cross themselves, parted in every loop: the kernel never looks for where an edge crosses itself.
+
+Where they turn back along themselves they are drawn straight on.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.brep.curves.folds import kept_unfolded
 from cadpanel.brep.curves.pcurve_fit import SAME, Stretch
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.geometry.polyline import arc_length
@@ -17,29 +21,44 @@ from cadpanel.geometry.vectors import norm, side_of
 # segments are compared at once.
 ROW = 32
 ROWS_AT_ONCE = 128
+# Ends of an edge this close to each other are one vertex for the kernel, mm; half of its own value.
+ONE_POINT = 0.5e-7
 
 
 def uncrossed(patch: Patch, stretch: Stretch, tolerance: float) -> list[Stretch]:
-    """Parts of a stretch, end to end, none of which crosses or touches itself; mostly the stretch alone.
+    """Parts of a stretch, end to end, none of which crosses, touches or follows itself; mostly the stretch alone.
 
     Args:
         patch: over which it lies.
-        stretch: which; where it is closed, its ends may stay one.
+        stretch: which; where it is closed, its ends may stay one, and where they are not quite one it is halved.
         tolerance: one that ends this close to itself touches itself, mm.
     """
+    if _goes_one_way(stretch.line):
+        return [stretch]
+    kept = kept_unfolded(patch, stretch.line)
+    stretch = replace(stretch, places=stretch.places[kept], line=stretch.line[kept])
     line = stretch.line
-    if (np.diff(line, axis=0) @ (line[-1] - line[0]) > 0.0).all():  # it goes one way
+    if _goes_one_way(line):
         return [stretch]
     reached = arc_length(patch.points(line))
     pairs = crossings(_drawn_on(line, reached, tolerance))
     at_ends = (reached[pairs[:, 0]] <= tolerance) & (reached[-1] - reached[pairs[:, 1] + 1] <= tolerance)
     follows = reached[pairs[:, 1]] - reached[pairs[:, 0] + 1] <= SAME * reached[-1]
-    closed = norm(np.diff(patch.points(line[[0, -1]]), axis=0))[0] <= tolerance
-    ends = [0, *_cuts(pairs[~(follows | (at_ends & closed))]), len(line) - 1]
+    gap = norm(np.diff(patch.points(line[[0, -1]]), axis=0))[0]
+    closed = gap <= tolerance
+    cuts = _cuts(pairs[~(follows | (at_ends & closed))])
+    if closed and gap > ONE_POINT and not cuts:
+        # The kernel joins the ends of two edges within its tolerance, but not both ends of one.
+        cuts = [int(np.searchsorted(reached, 0.5 * reached[-1]))]
+    ends = [0, *cuts, len(line) - 1]
     return [
         replace(stretch, places=stretch.places[first : last + 1], line=line[first : last + 1])
         for first, last in pairwise(ends)
     ]
+
+
+def _goes_one_way(line: Array) -> bool:
+    return bool((np.diff(line, axis=0) @ (line[-1] - line[0]) > 0.0).all())
 
 
 def _drawn_on(line: Array, reached: Array, length: float) -> Array:

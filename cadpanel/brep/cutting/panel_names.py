@@ -10,10 +10,13 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.cutting.cut_panel import along_name, grid_name
+from cadpanel.geometry.order import first_way, goes_backwards, order_in_space, principal_axes
 from cadpanel.geometry.vectors import unit
 
 # Neighbours whose directions differ by less than about 45 degrees from a way along the grid lie on that way.
 ALONG = 0.7
+# Middles of panels nearer to each other than this along an axis lie at the same place on it, mm.
+LEVEL = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,20 +41,20 @@ def place_names(surface: str, middles: Array, links: Sequence[Link]) -> list[str
     """
     count = len(middles)
     joined = _joined(links)
-    axes = _axes(middles)
-    chain = _chain(count, joined, middles @ axes[0])
+    axes = principal_axes(middles)
+    order = order_in_space(middles @ axes.T, LEVEL).tolist()
+    chain = _chain(order, joined)
     if chain is not None:
         names = [""] * count
         for place, panel in enumerate(chain):
             names[panel] = along_name(surface, place, count)
         return names
-    places = _lattice(middles, joined, axes)
+    places = _lattice(middles, joined, order, axes)
     if places is not None:
         rows, columns = (np.ptp(places, axis=0) + 1).tolist()
         return [grid_name(surface, row, column, (rows, columns)) for row, column in places.tolist()]
-    order = np.lexsort(np.round(middles @ axes.T, 3).T[::-1])
     names = [""] * count
-    for place, panel in enumerate(order.tolist()):
+    for place, panel in enumerate(order):
         names[panel] = along_name(surface, place, count)
     return names
 
@@ -70,34 +73,30 @@ def _joined(links: Sequence[Link]) -> dict[int, dict[int, Array]]:
     return joined
 
 
-def _axes(middles: Array) -> Array:
-    """(3, 3) the directions in which the panels extend most, next and least, each along the axis it follows most."""
-    offsets = middles - middles.mean(axis=0)
-    _, _, axes = np.linalg.svd(offsets, full_matrices=True)
-    signs = np.sign(axes[np.arange(3), np.abs(axes).argmax(axis=1)])
-    return np.asarray(axes * signs[:, None])
+def _chain(order: Sequence[int], joined: dict[int, dict[int, Array]]) -> list[int] | None:
+    """The panels in a row where they follow each other, begun with the first in order that has one neighbour; or None.
 
-
-def _chain(count: int, joined: dict[int, dict[int, Array]], along: Array) -> list[int] | None:
-    """The panels in their order where they follow each other, else None."""
+    A ring is begun with the first one, and goes on to that of its neighbours which comes last.
+    """
+    count = len(order)
     if count == 1:
         return [0]
     if any(len(joined[panel]) not in (1, 2) for panel in range(count)):
         return None
-    ends = [panel for panel in range(count) if len(joined[panel]) == 1]
-    start = min(ends or range(count), key=lambda panel: (along[panel], panel))
+    start = next((panel for panel in order if len(joined[panel]) == 1), order[0])
+    place = {panel: number for number, panel in enumerate(order)}
     chain, seen = [start], {start}
     while True:
-        onward = sorted((panel for panel in joined[chain[-1]] if panel not in seen), key=lambda panel: -along[panel])
+        onward = [panel for panel in joined[chain[-1]] if panel not in seen]
         if not onward:
             return chain if len(chain) == count else None
-        chain.append(onward[0])
-        seen.add(onward[0])
+        chain.append(max(onward, key=place.__getitem__))
+        seen.add(chain[-1])
 
 
-def _lattice(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -> IntArray | None:
+def _lattice(middles: Array, joined: dict[int, dict[int, Array]], order: Sequence[int], axes: Array) -> IntArray | None:
     """(n, 2) row and column of each panel, from 0, or None where stepping from one to the next contradicts itself."""
-    found = _first(middles, joined, axes)
+    found = _first(middles, joined, order, axes)
     if found is None:
         return None
     start, start_ways = found
@@ -124,15 +123,15 @@ def _lattice(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -
     return _ordered(np.array([places[panel] for panel in range(len(middles))]), middles)
 
 
-def _first(middles: Array, joined: dict[int, dict[int, Array]], axes: Array) -> tuple[int, Array] | None:
+def _first(
+    middles: Array, joined: dict[int, dict[int, Array]], order: Sequence[int], axes: Array
+) -> tuple[int, Array] | None:
     """A panel in a corner, and (2, 3) the ways from it along the columns and the rows; None where there is none."""
-    order = np.lexsort(np.round(middles @ axes.T, 3).T[::-1]).tolist()
     corners = [panel for panel in order if len(joined[panel]) == 2]
     for panel in corners:
         ways = np.array([unit(border - middles[panel]) for border in joined[panel].values()])
         if abs(ways[0] @ ways[1]) < ALONG:
-            along = np.abs(ways @ axes[0])
-            return panel, ways if along[0] >= along[1] else ways[::-1]
+            return panel, ways if first_way(ways @ axes.T) == 0 else ways[::-1]
     return None
 
 
@@ -143,7 +142,7 @@ def _ordered(places: IntArray, middles: Array) -> IntArray:
     for axis in (0, 1):
         # How the panels' middles move from one row (or column) to the next, in the mean.
         trend = (ordered[:, axis] - ordered[:, axis].mean()) @ offsets
-        if trend[np.abs(trend).argmax()] < 0.0:
+        if goes_backwards(trend):
             ordered[:, axis] = ordered[:, axis].max() - ordered[:, axis]
     return np.asarray(ordered, dtype=np.intp)
 

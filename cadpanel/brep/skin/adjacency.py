@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.faces.boundary import Edge
 from cadpanel.brep.skin.face_cleanup import SkinFace
+from cadpanel.geometry.order import order_in_space
 from cadpanel.geometry.polyline import distances_to_curves
 from cadpanel.geometry.vectors import norm
 
@@ -100,7 +101,7 @@ def surfaces_of(
     number, labels = connected_components(graph, directed=False)
     groups = [np.flatnonzero(labels == group).tolist() for group in range(number)]
     middles = np.array([_middle([faces[index] for index in group]) for group in groups])
-    order = np.lexsort([levels(middles[:, axis], max(tolerance, 1.0)) for axis in (2, 1, 0)]).tolist()
+    order = order_in_space(middles, max(tolerance, 1.0)).tolist()
     names = _names([[faces[index] for index in groups[group]] for group in order])
     surfaces = []
     for name, group in zip(names, order, strict=True):

@@ -15,6 +15,7 @@ from OCP.TopoDS import TopoDS_Face
 from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch, equal_parts, lengths_along, rectangle
 from cadpanel.brep.skin.adjacency import Surface
+from cadpanel.geometry.order import EQUAL, goes_backwards
 from cadpanel.geometry.vectors import norm
 
 # Parameter lines each way on which a face's curvature is looked at.
@@ -197,7 +198,7 @@ def _turning_rates(patch: Patch) -> tuple[tuple[float, float], tuple[float, floa
 def _slow_axis(rates: tuple[float, float], lengths: tuple[float, float]) -> int:
     slow, fast = sorted(rates)
     if fast < STRAIGHT or fast < ALIKE * slow:
-        return int(lengths[1] > lengths[0])
+        return int((1.0 - EQUAL) * lengths[1] > lengths[0])
     return int(rates[1] < rates[0])
 
 
@@ -262,7 +263,4 @@ def _forwards(lanes: Lanes) -> Lanes:
             for side in (0.0, 1.0)
         ]
     ).mean(axis=0)
-    way = ends[1] - ends[0]
-    if way[np.abs(way).argmax()] >= -COMMON:
-        return lanes
-    return lanes.turned()
+    return lanes.turned() if goes_backwards(ends[1] - ends[0], COMMON) else lanes

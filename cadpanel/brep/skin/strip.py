@@ -10,6 +10,7 @@ from cadpanel.arrays import Array
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.errors import OutlineError, ReferenceFileError
+from cadpanel.geometry.order import EQUAL, first_way, goes_backwards
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.model import RawPanel
@@ -73,8 +74,9 @@ class Strip:
 def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
     """The long edges of a surface with four sides, or one with more where two of them are clearly its ends.
 
-    The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one. It begins at
-    the end that comes first along the axis of space which it follows most.
+    The strip runs in the direction in which normals turn slowly; where both turn alike, in the longer one; where both
+    are as long, in the one that follows the first axis of space most. It begins at the end that comes first along the
+    axis of space which it follows most.
 
     Args:
         surface: any.
@@ -100,13 +102,18 @@ def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
         )
     rates = [sum(map(_turning, pair)) / sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]
     lengths = [sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]
-    slow, fast = sorted(rates)
-    alike = fast < STRAIGHT or fast < ALIKE * slow
-    first = int(lengths[1] > lengths[0]) if alike else int(rates[1] < rates[0])
     # The sides follow each other round the outline, so that opposite ones run against each other.
-    edges = sides[first].points, sides[first + 2].points[::-1]
-    way = np.mean([edge[-1] - edge[0] for edge in edges], axis=0)
-    if way[np.abs(way).argmax()] < 0.0:
+    pairs = [(sides[one].points, sides[one + 2].points[::-1]) for one in (0, 1)]
+    ways = np.array([np.mean([edge[-1] - edge[0] for edge in pair], axis=0) for pair in pairs])
+    slow, fast = sorted(rates)
+    if fast >= STRAIGHT and fast >= ALIKE * slow:
+        first = int(rates[1] < rates[0])
+    elif min(lengths) >= (1.0 - EQUAL) * max(lengths):
+        first = first_way(ways)
+    else:
+        first = int(lengths[1] > lengths[0])
+    edges = pairs[first]
+    if goes_backwards(ways[first]):
         edges = edges[0][::-1], edges[1][::-1]
     return Strip(edges=edges, girth=max(sides[first - 1].length, sides[1 - first].length, *_bulge(surface, edges)))
 

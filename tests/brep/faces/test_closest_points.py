@@ -5,7 +5,7 @@ import pytest
 
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.face_patch import patch_of
-from tests.brep.curves.test_drawn_curve import cut, polyline
+from tests.drawn import cut, polyline
 from tests.reference_shapes import kernel_face
 
 COUNT = 400

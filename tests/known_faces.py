@@ -1,0 +1,67 @@
+"""Faces whose shape is known: discs, polygons, creases."""
+
+import numpy as np
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakePolygon,
+    BRepBuilderAPI_MakeWire,
+)
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepLib import BRepLib
+from OCP.Geom import Geom_BezierSurface, Geom_BSplineSurface, Geom_Circle
+from OCP.GeomConvert import GeomConvert
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt
+from OCP.ShapeFix import ShapeFix_Face
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+
+RADIUS = 500.0
+
+
+def spline_plane():
+    poles = TColgp_Array2OfPnt(1, 2, 1, 2)
+    for row, x in enumerate((-RADIUS, RADIUS), start=1):
+        for column, y in enumerate((-RADIUS, RADIUS), start=1):
+            poles.SetValue(row, column, gp_Pnt(x, y, 0.0))
+    return GeomConvert.SurfaceToBSplineSurface_s(Geom_BezierSurface(poles))
+
+
+def disc(surface):
+    """A disc as the readers make it: on a spline surface its border runs up to 0.8 mm beside the circle."""
+    circle = Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), RADIUS)
+    if not isinstance(surface, gp_Pln):
+        circle = GeomConvert.CurveToBSplineCurve_s(circle)
+    wire = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle).Edge()).Wire()
+    fixing = ShapeFix_Face(BRepBuilderAPI_MakeFace(surface, wire, True).Face())
+    fixing.Perform()
+    fixing.FixOrientation()
+    BRepLib.SameParameter_s(fixing.Face(), 1e-7, True)
+    assert BRepCheck_Analyzer(fixing.Face()).IsValid()
+    return fixing.Face()
+
+
+def creased_face(angle):
+    """A face of 2 m x 1 m that breaks by so many degrees along its middle, without an edge there."""
+    rise = 500.0 * np.tan(np.radians(angle))
+    poles = TColgp_Array2OfPnt(1, 3, 1, 2)
+    for row, (y, z) in enumerate(((0.0, 0.0), (500.0, 0.0), (1000.0, rise)), start=1):
+        for column, x in enumerate((0.0, 2000.0), start=1):
+            poles.SetValue(row, column, gp_Pnt(x, y, z))
+    knots, ends = TColStd_Array1OfReal(1, 3), TColStd_Array1OfReal(1, 2)
+    counts, twice = TColStd_Array1OfInteger(1, 3), TColStd_Array1OfInteger(1, 2)
+    for place, (value, count) in enumerate(((0.0, 2), (0.5, 1), (1.0, 2)), start=1):
+        knots.SetValue(place, value)
+        counts.SetValue(place, count)
+    for place in (1, 2):
+        ends.SetValue(place, place - 1.0)
+        twice.SetValue(place, 2)
+    return BRepBuilderAPI_MakeFace(Geom_BSplineSurface(poles, knots, ends, counts, twice, 1, 1), 1e-7).Face()
+
+
+def flat(corners):
+    polygon = BRepBuilderAPI_MakePolygon()
+    for corner in corners:
+        polygon.Add(gp_Pnt(*map(float, corner)))
+    polygon.Close()
+    return BRepBuilderAPI_MakeFace(polygon.Wire(), True).Face()

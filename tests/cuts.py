@@ -60,3 +60,10 @@ def middle(panel):
     (samples, *others) = sample_faces(compound_of(panel.faces))
     points = np.concatenate([face.points for face in (samples, *others)])
     return points.mean(axis=0)
+
+
+def surface_of(*faces, tolerance=1.0):
+    """The one surface that faces make together, cleaned up as those of a file are."""
+    skin, _ = skin_faces(select_faces(model_of(*faces), None), "roof.step", tolerance)
+    (found,), _ = surfaces_of(skin, "roof.step", tolerance)
+    return found

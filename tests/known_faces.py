@@ -9,9 +9,10 @@ from OCP.BRepBuilderAPI import (
 )
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
-from OCP.Geom import Geom_BezierSurface, Geom_BSplineSurface, Geom_Circle
+from OCP.Geom import Geom_BezierSurface, Geom_BSplineSurface, Geom_Circle, Geom_CylindricalSurface
+from OCP.Geom2d import Geom2d_Circle
 from OCP.GeomConvert import GeomConvert
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt
+from OCP.gp import gp_Ax2, gp_Ax2d, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pln, gp_Pnt, gp_Pnt2d
 from OCP.ShapeFix import ShapeFix_Face
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
@@ -65,3 +66,44 @@ def flat(corners):
         polygon.Add(gp_Pnt(*map(float, corner)))
     polygon.Close()
     return BRepBuilderAPI_MakeFace(polygon.Wire(), True).Face()
+
+
+BERNSTEIN = np.array([[1.0, 0.0, 0.0], [0.25, 0.5, 0.25], [0.0, 0.0, 1.0]])
+
+
+def graph_surface(height, origin=(0.0, 0.0), way_u=(1000.0, 0.0), way_v=(0.0, 1000.0)):
+    """The Bezier surface z = height(x, y), of degree 2 in each, over a parallelogram of the plane."""
+    parts = np.array([0.0, 0.5, 1.0])
+    u, v = np.meshgrid(parts, parts, indexing="ij")
+    x, y = (origin[k] + way_u[k] * u + way_v[k] * v for k in range(2))
+    inverse = np.linalg.inv(BERNSTEIN)
+    poles = np.stack([inverse @ values @ inverse.T for values in (x, y, height(x, y))], axis=-1)
+    return bezier_surface(poles)
+
+
+def bezier_surface(poles):
+    """The Bezier surface of (m, n, 3) poles."""
+    array = TColgp_Array2OfPnt(1, len(poles), 1, len(poles[0]))
+    for row, line in enumerate(np.asarray(poles, dtype=float).tolist(), start=1):
+        for column, pole in enumerate(line, start=1):
+            array.SetValue(row, column, gp_Pnt(*pole))
+    return Geom_BezierSurface(array)
+
+
+def face_on(surface, *ranges):
+    """The face of a whole surface, or of the part of it over a range of u and of v."""
+    return BRepBuilderAPI_MakeFace(surface, *(end for own in ranges for end in own), 1e-7).Face()
+
+
+def disc_on(surface, center, radius):
+    """The face that a circle of the parameter plane cuts out of a surface."""
+    circle = Geom2d_Circle(gp_Ax2d(gp_Pnt2d(*center), gp_Dir2d(1.0, 0.0)), radius)
+    edge = BRepBuilderAPI_MakeEdge(circle, surface).Edge()
+    BRepLib.BuildCurves3d_s(edge)
+    return BRepBuilderAPI_MakeFace(surface, BRepBuilderAPI_MakeWire(edge).Wire(), True).Face()
+
+
+def arc_face(radius, first, last, length=1000.0):
+    """Of a cylinder about the x axis the part between two angles, degrees."""
+    surface = Geom_CylindricalSurface(gp_Ax3(gp_Pnt(), gp_Dir(1.0, 0.0, 0.0), gp_Dir(0.0, 1.0, 0.0)), radius)
+    return face_on(surface, np.radians((first, last)).tolist(), (0.0, length))

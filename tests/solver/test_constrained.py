@@ -179,3 +179,10 @@ def test_the_last_round_of_the_balance_is_still_one_of_it(balance):
     model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
     found = solve(model, targets.copy(), Schedule(balance=balance, close=5, steady=0.0))
     assert found.rounds == balance + 1
+
+
+def test_the_balance_ends_once_the_cost_is_at_rest():
+    """Long before its last round, where all holds from the start."""
+    targets = np.array([[1.0, 0.0], [3.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
+    assert solve(model, targets.copy(), Schedule(balance=60, close=5)).rounds < 30

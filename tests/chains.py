@@ -214,3 +214,7 @@ def outline_near(layout: Layout, corners: Array, random: np.random.Generator, sh
         across=Limited(corners=held, part=across),
         sided=np.array([isinstance(one, Feature) for one in layout.feature_of]),
     )
+
+
+def rulings_of(walked):
+    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": walked.arcs}

@@ -303,3 +303,12 @@ def write_plain(path: Path, *shapes: TopoDS_Shape) -> Path:
         assert writer.Transfer(shape, STEPControl_AsIs) == IFSelect_RetDone
     assert writer.Write(str(path)) == IFSelect_RetDone
     return path
+
+
+def tile(name, x, y, width=1000.0, length=1000.0, height=0.0):
+    """A flat panel from (x, y) on."""
+
+    def surface(u, v):
+        return np.stack([x + width * u, y + length * v, height + 0.0 * u + 0.0 * v], axis=-1)
+
+    return RawPanel(name=name, faces=(sampled_face(surface, (0.0, 1.0)),))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,7 @@ import cadpanel
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "cadpanel"
+TESTS = ROOT / "tests"
 LONGEST_FILE = 400
 TOP_LEVEL = {"pyproject.toml", "cadpanel", "tests", "fixtures", "examples", "README.md", "LICENSE"}
 HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPython"}
@@ -169,3 +172,117 @@ def test_the_top_level_shows_only_what_it_should() -> None:
         pytest.skip("not a git checkout, so what belongs to the project cannot be told from what lies about")
     names = {name.partition("/")[0] for name in listing.stdout.split("\0") if name}
     assert {name for name in names if not name.startswith(".")} == TOP_LEVEL
+
+
+# Folders of tests that are not about one package: another program, and commands.
+BESIDE = {"freecad", "benchmarks", "mutation"}
+
+# Modules without a test file of their name that no test imports: those without logic, with the reason, and those that
+# are reached through one door only, with the tests that go through it.
+WITHOUT_LOGIC = {
+    "cadpanel.brep.kernel.types": "three other names for the kernel's types",
+    "cadpanel.brep.files.format": "what a file format is asked for, abstract",
+    "cadpanel.brep.files.packing": "records that travel between processes",
+    "cadpanel.brep.isolation.interpreter": "the path of an interpreter",
+    "cadpanel.fitting.methods.method": "what a method is asked for, abstract",
+    "cadpanel.cli.features": "prints the catalogue",
+}
+THROUGH_A_DOOR = {
+    "cadpanel.atomic.axis_starts": "tests/atomic/test_recovery.py",
+    "cadpanel.atomic.clouds": "tests/atomic/test_laws.py",
+    "cadpanel.atomic.deviations": "tests/atomic/test_laws.py",
+    "cadpanel.atomic.flat_starts": "tests/atomic/test_recovery.py",
+    "cadpanel.atomic.race": "tests/atomic/test_recovery.py",
+    "cadpanel.atomic.result": "tests/atomic/test_errors.py",
+    "cadpanel.atomic.surface": "tests/atomic/test_recovery.py",
+    "cadpanel.brep.building.polygon_sheet": "tests/brep/building/test_every_feature.py",
+    "cadpanel.brep.cutting.by_length": "tests/brep/cutting/test_ways.py",
+    "cadpanel.brep.cutting.by_stations": "tests/brep/cutting/test_ways.py",
+    "cadpanel.brep.files.brep": "tests/brep/files/test_formats.py",
+    "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",
+    "cadpanel.brep.files.step": "tests/brep/files/test_formats.py",
+    "cadpanel.brep.files.step_products": "tests/brep/test_read.py",
+    "cadpanel.brep.server": "tests/brep/test_read.py",
+    "cadpanel.brep.step.products": "tests/brep/step/test_file.py",
+    "cadpanel.cli.inspect": "tests/cli/test_cutting.py",
+    "cadpanel.cli.options": "tests/cli/test_main.py",
+    "cadpanel.cli.steps": "tests/cli/test_fit.py",
+    "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
+    "cadpanel.cli.tables": "tests/cli/test_fit.py",
+    "cadpanel.delivery.records.summary": "tests/delivery/records/test_report.py",
+    "cadpanel.delivery.records.table1": "tests/cli/test_compare.py",
+    "cadpanel.fitting.measures.boundary": "tests/fitting/test_measures.py",
+    "cadpanel.fitting.methods.balance": "tests/fitting/test_methods.py",
+    "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",
+    "cadpanel.reference.alignment": "tests/reference/test_oriented_panel.py",
+    "cadpanel.reference.inner_edges": "tests/reference/test_outline.py",
+    "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",
+    "cadpanel.studies.table1": "tests/cli/test_compare.py",
+    "cadpanel.terms.limits.lower_bound": "tests/fitting/test_limits.py",
+}
+
+
+def modules() -> dict[str, Path]:
+    """All modules of the package with their files, without those that are folders."""
+    return {
+        ".".join(file.relative_to(ROOT).with_suffix("").parts): file
+        for file in sorted(PACKAGE.rglob("*.py"))
+        if file.name != "__init__.py"
+    }
+
+
+def imported_by(files: Iterable[Path]) -> set[str]:
+    """What Python files import, modules and names of modules alike."""
+    found: set[str] = set()
+    for file in files:
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                found |= {name.name for name in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                found |= {node.module, *(f"{node.module}.{name.name}" for name in node.names)}
+    return found
+
+
+def test_every_folder_of_tests_mirrors_one_of_the_package() -> None:
+    strange = [
+        str(folder.relative_to(TESTS))
+        for folder in TESTS.rglob("*")
+        if folder.is_dir()
+        and folder.name != "__pycache__"
+        and folder.relative_to(TESTS).parts[0] not in BESIDE
+        and not (PACKAGE / folder.relative_to(TESTS)).is_dir()
+    ]
+    assert strange == []
+
+
+def test_the_tests_of_a_room_stand_in_its_folder() -> None:
+    """Beside the folders of brep there are only the tests of what stands there, too."""
+    loose = {path.stem.split("_")[1] for path in (TESTS / "brep").glob("test_*.py")}
+    assert loose <= {"read", "survey", "server"}
+
+
+def test_every_module_has_a_test_file_of_its_name_or_is_imported_by_a_test() -> None:
+    known = imported_by(TESTS.rglob("*.py"))
+    untested = [
+        name
+        for name, file in modules().items()
+        if name not in known
+        and not (TESTS / file.relative_to(PACKAGE)).with_name(f"test_{file.name}").is_file()
+        and name not in WITHOUT_LOGIC
+        and name not in THROUGH_A_DOOR
+    ]
+    assert untested == []
+
+
+def test_the_modules_that_need_no_test_of_their_own_are_still_such() -> None:
+    named = {**WITHOUT_LOGIC, **THROUGH_A_DOOR}
+    assert set(named) <= set(modules())
+    assert set(named) & imported_by(TESTS.rglob("*.py")) == set()
+    assert [door for door in THROUGH_A_DOOR.values() if not (ROOT / door).is_file()] == []
+
+
+def test_no_test_file_is_imported_by_another() -> None:
+    """What tests share stands in modules that are no tests, so that a file of tests can be moved or deleted."""
+    found = {name for name in imported_by(TESTS.rglob("*.py")) if name.startswith("tests.")}
+    files = {".".join(file.relative_to(ROOT).with_suffix("").parts) for file in TESTS.rglob("test_*.py")}
+    assert found & files == set()

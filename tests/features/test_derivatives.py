@@ -6,8 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
-from tests.chains import CHAINS, FEATURES, random_values, slopes
-from tests.features.test_every_feature import rulings_of
+from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
 
 # Lengths in panel lengths, angles in radians.
 ROUNDING = 1e-12

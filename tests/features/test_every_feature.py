@@ -13,7 +13,7 @@ from cadpanel.features.rulings import Rulings
 from cadpanel.features.walk import end_points
 from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
 from cadpanel.geometry.vectors import cross, dot
-from tests.chains import CHAINS, FEATURES, random_values, slopes
+from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
 
 # Lengths in panel lengths, angles in radians.
 ROUNDING = 1e-12
@@ -22,10 +22,6 @@ few = settings(max_examples=5)
 seeds = st.integers(0, 2**32 - 1)
 every_feature = pytest.mark.parametrize("name", sorted(FEATURES))
 every_chain = pytest.mark.parametrize("name", sorted(CHAINS))
-
-
-def rulings_of(walked):
-    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": walked.arcs}
 
 
 def seen_from_anchor(walked, rulings):

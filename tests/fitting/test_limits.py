@@ -118,3 +118,19 @@ def test_the_radius_at_a_corner_is_the_distance_to_the_axis_over_the_cosine():
     off = state.corners.position - (walked.anchor.p - radius[:, None, None] * walked.anchor.n)
     off -= np.einsum("pcx,px->pc", off, axis)[..., None] * axis[:, None]
     assert np.linalg.norm(off, axis=-1) / np.cos(angle)[:, None] == pytest.approx(lengths, rel=1e-12)
+
+
+@chains
+@pytest.mark.parametrize("least", [0.05, 0.3, 2.0])
+def test_a_limit_holds_exactly_from_its_least_length_on(name, least):
+    """A tenth more is asked for, and a tenth is what the lack may be."""
+    of = FEATURES[name]
+    unknowns = random_unknowns(of, 6)
+    layout = Layout.of([of] * len(unknowns))
+    state = State(layout, layout.walk(unknowns, derivatives=False))
+    (walked,) = state.walks
+    for limit in limits_of(of, len(unknowns), least):
+        lengths, _ = limit.lengths(walked, state.corners, derivatives=False)
+        lack = limit.vectors(state)[..., 0]
+        np.testing.assert_allclose(lack, np.maximum(1.1 * least - lengths, 0.0), atol=1e-12)
+        assert (limit.hold.excess(limit.vectors(state)) <= 1.0) == bool((lengths >= least).all())

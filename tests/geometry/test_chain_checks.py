@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
+from cadpanel.geometry.chain_checks import LARGEST_HALF_ANGLE, LARGEST_RADIUS, check_skin
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.sheet_checks import check_buildable
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
@@ -215,3 +216,30 @@ def test_a_patch_without_width_is_refused(sweep, passes):
 
 def test_a_half_angle_near_a_right_angle_is_refused():
     refused(folded_panel(half_angle=1.45), "half angle")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_half_angle_is_refused_from_just_beyond_the_largest_one_on(side):
+    """Only that is told of here: what else is wrong with so steep a cone is another refusal's matter."""
+
+    def said(half_angle):
+        with pytest.raises(PanelError) as refused:
+            check_skin(folded_panel(half_angle=side * half_angle))
+        return str(refused.value)
+
+    assert "the half angle of patch 2" not in said(LARGEST_HALF_ANGLE)
+    assert "the half angle of patch 2" in said(math.nextafter(LARGEST_HALF_ANGLE, 2.0))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_radius_is_refused_from_just_beyond_the_largest_one_on(side):
+    def said(radius):
+        sweep = side * 300.0 / radius
+        try:
+            check_skin(folded_panel(radius=side * radius, sweep=sweep))
+        except PanelError as error:
+            return str(error)
+        return ""
+
+    assert "the normal radius of patch 2" not in said(LARGEST_RADIUS)
+    assert "the normal radius of patch 2" in said(math.nextafter(LARGEST_RADIUS, math.inf))

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
 from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
@@ -102,3 +103,34 @@ def test_the_distance_agrees_with_a_dense_sampling(seed):
 
 def test_no_pairs_have_no_distances():
     assert len(hausdorff_distances([], [])) == 0
+
+
+def ellipse(random, flat):
+    """A half axis of a length between 100 and 500 mm, the other one flatter by a factor, over any part of the turn."""
+    axes, _ = np.linalg.qr(random.normal(size=(3, 3)))
+    major = random.uniform(100.0, 500.0)
+    start = random.uniform(0.0, 2.0 * np.pi)
+    return CurvePieces(
+        centers=random.uniform(-200.0, 200.0, (1, 3)),
+        cosine_axes=major * axes[:1],
+        sine_axes=flat * major * axes[1:2],
+        starts=np.array([start]),
+        stops=np.array([start + random.uniform(0.5, 2.0 * np.pi)]),
+        arcs=np.array([True]),
+    )
+
+
+def sampled_arc(piece, count=1500):
+    at = np.linspace(piece.starts[0], piece.stops[0], count)
+    return piece.centers + np.outer(np.cos(at), piece.cosine_axes[0]) + np.outer(np.sin(at), piece.sine_axes[0])
+
+
+@pytest.mark.parametrize("flat", [1.0, 0.6, 0.2])
+def test_distances_between_ellipses_anywhere_are_those_of_many_points_on_them(flat):
+    random = np.random.default_rng(5)
+    pairs = [(ellipse(random, flat), ellipse(random, flat)) for _ in range(12)]
+    found = hausdorff_distances(*zip(*pairs, strict=True))
+    for distance, pair in zip(found, pairs, strict=True):
+        points = [sampled_arc(piece) for piece in pair]
+        wanted = max(cKDTree(points[k]).query(points[1 - k])[0].max() for k in range(2))
+        assert distance == pytest.approx(wanted, abs=1.0)

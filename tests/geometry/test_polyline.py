@@ -1,11 +1,20 @@
 """Distances to curves of which only points are known."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.geometry.polyline import distances_to_curves
+from cadpanel.geometry.polyline import (
+    arc_length,
+    arc_lengths,
+    distances_to_curves,
+    distances_to_polylines,
+    end_tangents,
+    interpolate,
+)
 
 
 def helix(parts, radius, turn, pitch):
@@ -50,3 +59,64 @@ def test_no_curve_overshoots_a_corner(turn):
 def test_points_that_lie_on_each_other_are_met_by_chords():
     line = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 0.0, 0.0]])
     assert distances_to_curves(np.array([[[1.0, 2.0, 0.0], [2.5, 2.0, 0.0]]]), line[None])[0] == pytest.approx(2.0)
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(2, 8))
+def test_distances_to_a_polyline_are_those_to_many_points_on_it(seed, count):
+    random = np.random.default_rng(seed)
+    line, points = random.uniform(-100.0, 100.0, (count, 3)), random.uniform(-200.0, 200.0, (7, 3))
+    shares = np.linspace(0.0, 1.0, 2001)[:, None]
+    dense = np.concatenate([first + shares * (last - first) for first, last in pairwise(line)])
+    wanted = np.linalg.norm(points[:, None] - dense, axis=-1).min(axis=1)
+    np.testing.assert_allclose(distances_to_polylines(points[None], line[None])[0], wanted, atol=0.1)
+
+
+@pytest.mark.parametrize("beyond", [1e-3, 10.0, 40.0])
+def test_beyond_the_ends_of_a_polyline_its_ends_count(beyond):
+    line = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]])
+    points = np.array([[100.0 + beyond, 0.0, 0.0], [-beyond, 0.0, 0.0]])
+    np.testing.assert_allclose(distances_to_polylines(points[None], line[None])[0], beyond)
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 9))
+def test_lengths_along_a_polyline_add_up(seed, count):
+    points = np.random.default_rng(seed).normal(size=(count, 3))
+    found = arc_length(points)
+    assert found[0] == 0.0
+    np.testing.assert_allclose(np.diff(found), np.linalg.norm(np.diff(points, axis=0), axis=1))
+
+
+@given(seed=st.integers(0, 2**32 - 1), counts=st.lists(st.integers(4, 9), min_size=1, max_size=3))
+def test_a_cubic_is_met_exactly_on_every_curve_however_unevenly_its_points_lie(seed, counts):
+    random = np.random.default_rng(seed)
+    lengths = [np.cumsum(random.uniform(0.2, 1.0, count)) for count in counts]
+    cubics = [random.normal(size=(4, 2)) for _ in counts]
+    places = [np.append(random.uniform(own[0], own[-1], 5), own[[0, -1]]) for own in lengths]
+
+    def on(cubic, at):
+        return np.vander(at, 4) @ cubic
+
+    values = np.concatenate([on(cubic, own) for cubic, own in zip(cubics, lengths, strict=True)])
+    wanted = np.concatenate([on(cubic, own) for cubic, own in zip(cubics, places, strict=True)])
+    np.testing.assert_allclose(interpolate(lengths, values, places), wanted, atol=1e-9 * np.abs(values).max())
+
+
+@given(seed=st.integers(0, 2**32 - 1), first=st.floats(0.1, 3.0), second=st.floats(0.1, 3.0))
+def test_the_tangent_at_an_end_is_that_of_the_parabola_by_length_of_chord(seed, first, second):
+    """Through a start, a point that is `first` away from it, and one that is so far away as it then says."""
+    way, bend = np.random.default_rng(seed).normal(size=(2, 3))
+    near = first * way
+    far = (first + second) * way + second * (first + second) * 0.1 * bend
+    steps = np.linalg.norm([near, far], axis=1)
+    # p(s) = a s + b s^2 with p(|near|) = near and p(|far|) = far.
+    a, _ = np.linalg.solve([[steps[0], steps[0] ** 2], [steps[1], steps[1] ** 2]], np.array([near, far]))
+    found = end_tangents(np.array([np.zeros(3), near, far]))
+    np.testing.assert_allclose(found, a / np.linalg.norm(a), atol=1e-9)
+
+
+def test_several_polylines_have_each_its_own_lengths():
+    random = np.random.default_rng(1)
+    for counts in ((4, 4, 4), (4, 6, 5)):
+        lines = [random.normal(size=(count, 3)) for count in counts]
+        for found, line in zip(arc_lengths(lines), lines, strict=True):
+            np.testing.assert_allclose(found, arc_length(line))

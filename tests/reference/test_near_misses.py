@@ -8,18 +8,9 @@ import pytest
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
-from tests.reference_shapes import moved, polygon_face, raw_grid, raw_strip, ring, sampled_face, sheet_of, strip
+from tests.reference_shapes import moved, polygon_face, raw_grid, raw_strip, ring, sheet_of, strip, tile
 
 ROOF = sheet_of(lambda x, y: 0.0 * (x + y), width=4000.0, length=4000.0)
-
-
-def tile(name, x, y, width=1000.0, length=1000.0, height=0.0):
-    """A flat panel from (x, y) on."""
-
-    def surface(u, v):
-        return np.stack([x + width * u, y + length * v, height + 0.0 * u + 0.0 * v], axis=-1)
-
-    return RawPanel(name=name, faces=(sampled_face(surface, (0.0, 1.0)),))
 
 
 def notes(*panels, tolerance=1.0):

@@ -11,7 +11,6 @@ from cadpanel.reference.model import RawPanel
 from cadpanel.reference.oriented_panel import Sheet, sheet
 from cadpanel.reference.outline import EVEN_PARTS, Side, find_outline
 from cadpanel.reference.overlaps import _loop, refuse_overlaps
-from tests.reference.test_near_misses import tile
 from tests.reference_shapes import (
     Lip,
     lens,
@@ -25,6 +24,7 @@ from tests.reference_shapes import (
     sampled_face,
     sheet_of,
     strip,
+    tile,
 )
 
 SADDLE = sheet_of(lambda x, y: 900.0 * (x - 0.5) ** 2 - 1200.0 * (y - 0.4) ** 2, 12_000.0, 12_000.0)

@@ -170,3 +170,19 @@ def test_no_weight_leaves_its_bounds():
         hold.adapt(np.array([[[1e6], [1e-9]]]), only_grow=False)
     assert hold.weight[0, 0] == pytest.approx(1e5)
     assert hold.weight[0, 1] == pytest.approx(1e-3)
+
+
+@pytest.mark.parametrize("balance", [1, 3])
+def test_the_last_round_of_the_balance_is_still_one_of_it(balance):
+    """What holds from the start counts as done once the cost is at rest or the balance is over, not before."""
+    targets = np.array([[1.0, 0.0], [3.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
+    found = solve(model, targets.copy(), Schedule(balance=balance, close=5, steady=0.0))
+    assert found.rounds == balance + 1
+
+
+def test_the_balance_ends_once_the_cost_is_at_rest():
+    """Long before its last round, where all holds from the start."""
+    targets = np.array([[1.0, 0.0], [3.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
+    assert solve(model, targets.copy(), Schedule(balance=60, close=5)).rounds < 30

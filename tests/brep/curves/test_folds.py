@@ -10,8 +10,8 @@ from cadpanel.brep.curves.folds import kept_unfolded, turns_back
 from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.kernel.tolerances import CLOSE
-from tests.brep.test_drawn_curves import plate
-from tests.brep.test_feet import hem
+from tests.drawn import plate
+from tests.known_faces import hem
 from tests.reference_shapes import kernel_face
 
 MOST_NOISE = 1e-11

@@ -17,7 +17,7 @@ from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.curves.test_drawn_curve import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw
+from tests.drawn import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw
 from tests.model_files import STRIP, strip_faces, write_labelled, write_shape
 
 

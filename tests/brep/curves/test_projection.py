@@ -10,8 +10,7 @@ from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.curves.test_drawn_curve import LENGTH, WIDTH, circle, cut, line, plate, polyline, raw
-from tests.brep.cutting.test_by_network import curve
+from tests.drawn import LENGTH, WIDTH, circle, curve, cut, line, plate, polyline, raw
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
 

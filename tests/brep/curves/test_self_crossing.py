@@ -8,7 +8,7 @@ from OCP.gp import gp_Pnt
 from OCP.TColgp import TColgp_HArray1OfPnt
 
 from cadpanel.brep.curves.self_crossing import crossings
-from tests.brep.curves.test_drawn_curve import LENGTH, WIDTH, areas, cut, line, plate
+from tests.drawn import LENGTH, WIDTH, areas, cut, line, plate
 
 CLOSELY = 1e-5  # part of the area; the splines follow the formulae no better
 

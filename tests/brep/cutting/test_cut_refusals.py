@@ -19,7 +19,7 @@ from OCP.TopAbs import TopAbs_FACE
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFileError, SettingsError
-from tests.brep.cutting.test_ways import reference_of
+from tests.cuts import reference_of
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
 

@@ -17,10 +17,9 @@ from cadpanel.brep.cutting.cut_panel import middle_of
 from cadpanel.brep.cutting.panel_names import Link, place_names
 from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.kernel.shapes import shapes_of
-from tests.brep.test_drawn_curves import LENGTH, WIDTH, cut, plate, polyline
-from tests.brep.test_feet import hem, spiral
-from tests.brep.test_network import curve
-from tests.brep.test_subdivide import model_of, panels_of
+from tests.cuts import model_of, panels_of
+from tests.drawn import LENGTH, WIDTH, curve, cut, plate, polyline
+from tests.known_faces import hem, spiral
 from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import kernel_face
 

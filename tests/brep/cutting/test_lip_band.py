@@ -15,7 +15,7 @@ import cadpanel as cp
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
-from tests.brep.cutting.test_ways import EQUAL, cut, model_of, panels_of
+from tests.cuts import EQUAL, cut, model_of, panels_of
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
 

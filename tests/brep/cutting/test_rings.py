@@ -15,7 +15,7 @@ from OCP.TopLoc import TopLoc_Location
 from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
-from tests.brep.cutting.test_ways import assert_covers, middle, model_of, panels_of, reference_of
+from tests.cuts import assert_covers, middle, model_of, panels_of, reference_of
 from tests.reference_shapes import kernel_face, ring
 
 RADIUS, HEIGHT = 2000.0, 800.0

@@ -11,8 +11,7 @@ from OCP.TopAbs import TopAbs_FACE
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
-from tests.brep.curves.test_drawn_curve import LENGTH, WAVE, WIDTH, cut_points, plate, raw, wave
-from tests.brep.cutting.test_by_network import curve
+from tests.drawn import LENGTH, WAVE, WIDTH, curve, cut_points, plate, raw, wave
 from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import kernel_face
 

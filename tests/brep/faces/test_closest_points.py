@@ -5,26 +5,12 @@ import pytest
 
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.face_patch import patch_of
-from tests.brep.curves.test_drawn_curve import cut, polyline
+from tests.drawn import cut, polyline
+from tests.known_faces import hem, spiral
 from tests.reference_shapes import kernel_face
 
 COUNT = 400
 ON_IT = 1e-6  # mm
-
-
-def hem(gap):
-    """A sheet folded twice, its three layers a gap apart."""
-    return lambda u, v: np.stack([150.0 * np.cos(3.0 * np.pi * u), 4000.0 * v, 3.0 * gap * u], axis=-1)
-
-
-def spiral(gap):
-    """A sheet that winds round twice."""
-
-    def surface(u, v):
-        angle, radius = 4.0 * np.pi * u, 1000.0 + 2.0 * gap * u
-        return np.stack([radius * np.cos(angle), radius * np.sin(angle), 3000.0 * v], axis=-1)
-
-    return surface
 
 
 def slow(u, v):

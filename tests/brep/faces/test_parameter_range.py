@@ -14,7 +14,7 @@ from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.faces.parameter_range import parameter_range
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.splitting.test_split import RADIUS, spline_plane
+from tests.known_faces import RADIUS, spline_plane
 from tests.model_files import strip_faces, write_shape
 
 CENTER = (0.45, 0.55)  # of the spline plane's parameters, which go from 0 to 1 over a square

@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_Transform
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_Transform
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
-from OCP.Geom import Geom_BSplineSurface
 from OCP.gp import gp_Pnt, gp_Trsf
-from OCP.TColgp import TColgp_Array2OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 
 from cadpanel.brep.faces.sampling import sample_faces
@@ -18,9 +15,10 @@ from cadpanel.brep.read import read_raw_panels, read_reference
 from cadpanel.brep.skin.face_cleanup import find_doubles
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.cutting.test_by_network import across, quads, write_mesh
+from tests.known_faces import creased_face
 from tests.model_files import STRIP, Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_face
+from tests.strip_cuts import across, quads, write_mesh
 
 LIP = Lip(length=6000.0, twist=1.0, taper=0.02)
 FAR = (8.3e8, -2.1e8, 4.0e5)
@@ -186,24 +184,6 @@ def test_strip_that_is_none_is_refused_with_what_to_do(tmp_path):
     ):
         read_raw_panels(path, how(divide=2))
     assert len(load_model(path, 1.0).faces()) == 3
-
-
-def creased_face(angle):
-    """A face of 2 m x 1 m that breaks by so many degrees along its middle, without an edge there."""
-    rise = 500.0 * np.tan(np.radians(angle))
-    poles = TColgp_Array2OfPnt(1, 3, 1, 2)
-    for row, (y, z) in enumerate(((0.0, 0.0), (500.0, 0.0), (1000.0, rise)), start=1):
-        for column, x in enumerate((0.0, 2000.0), start=1):
-            poles.SetValue(row, column, gp_Pnt(x, y, z))
-    knots, ends = TColStd_Array1OfReal(1, 3), TColStd_Array1OfReal(1, 2)
-    counts, twice = TColStd_Array1OfInteger(1, 3), TColStd_Array1OfInteger(1, 2)
-    for place, (value, count) in enumerate(((0.0, 2), (0.5, 1), (1.0, 2)), start=1):
-        knots.SetValue(place, value)
-        counts.SetValue(place, count)
-    for place in (1, 2):
-        ends.SetValue(place, place - 1.0)
-        twice.SetValue(place, 2)
-    return BRepBuilderAPI_MakeFace(Geom_BSplineSurface(poles, knots, ends, counts, twice, 1, 1), 1e-7).Face()
 
 
 @pytest.mark.parametrize(("angle", "told"), [(0.0, False), (0.2, False), (5.0, True), (60.0, True)])

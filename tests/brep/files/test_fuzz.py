@@ -19,7 +19,7 @@ from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.cutting.test_by_network import curve
+from tests.drawn import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
 

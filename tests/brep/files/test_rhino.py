@@ -3,13 +3,12 @@ import re
 import numpy as np
 import pytest
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
 from OCP.Geom2d import Geom2d_Ellipse
 from OCP.gp import gp_Ax2d, gp_Dir2d, gp_Pnt, gp_Pnt2d
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.faces.face_patch import patch_of
@@ -23,36 +22,10 @@ from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.rhino_files import bent_surface, file_in, off_border, rhino, written
 
-rhino = pytest.importorskip("rhino3dm")
 EXACT = 1e-9
 TRIMMED = 1e-6  # part of the area of a face whose border is projected to 1e-4 mm
-
-
-def file_in(unit="Millimeters"):
-    file = rhino.File3dm()
-    file.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, unit)
-    return file
-
-
-def written(path, file):
-    assert file.Write(str(path), 8)
-    return path
-
-
-def bent_surface(length=9000.0, rational=False):
-    """A surface of degree 3 x 1 over a bent section."""
-    surface = rhino.NurbsSurface.Create(3, rational, 4, 2, 5, 2)
-    for place, knot in enumerate((0.0, 0.0, 0.0, 0.4, 1.0, 1.0, 1.0)):
-        surface.KnotsU[place] = knot
-    for place, knot in enumerate((0.0, 1.0)):
-        surface.KnotsV[place] = knot
-    section = ((0.0, 0.0), (500.0, 0.0), (800.0, -100.0), (900.0, -500.0), (900.0, -900.0))
-    for i, (y, z) in enumerate(section):
-        for j, x in enumerate((0.0, length)):
-            weight = 0.8 if rational and i == 2 else 1.0
-            surface.Points[i, j] = rhino.Point4d(weight * x, weight * y, weight * z, weight)
-    return surface
 
 
 def assert_same_surface(face, source, factor=1.0):
@@ -112,18 +85,6 @@ def test_solid_of_rhino_is_trimmed_and_closed(tmp_path):
     areas = sorted(area_of(face) for face in shapes_of(model.parts[0].shape, TopAbs_FACE))
     assert areas == pytest.approx([np.pi * 500.0**2] * 2 + [2.0 * np.pi * 500.0 * 2000.0], rel=TRIMMED)
     assert area_of(model.parts[1].shape) == pytest.approx(4.0 * np.pi * 300.0**2, rel=TRIMMED)
-
-
-def off_border(face):
-    """How far the borders of a face run beside their curves in space at most, mm."""
-    surface = BRepAdaptor_Surface(face)
-    off = [0.0]
-    for edge in map(TopoDS.Edge_s, shapes_of(face, TopAbs_EDGE)):
-        if not BRep_Tool.Degenerated_s(edge):
-            drawn, flat = BRepAdaptor_Curve(edge), BRepAdaptor_Curve2d(edge, face)
-            places = np.linspace(drawn.FirstParameter(), drawn.LastParameter(), 301).tolist()
-            off += [drawn.Value(at).Distance(surface.Value(*flat.Value(at).Coord())) for at in places]
-    return max(off)
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("Millimeters", 1.0), ("Meters", 1000.0), ("Inches", 25.4)])

@@ -14,7 +14,7 @@ from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.files.test_rhino import bent_surface, file_in, off_border, written
+from tests.rhino_files import bent_surface, file_in, off_border, written
 
 rhino = pytest.importorskip("rhino3dm")
 TURN = 2.0 * np.pi

@@ -7,7 +7,7 @@ from cadpanel.brep.files.model import Label
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_reference
 from cadpanel.errors import PanelError
-from tests.brep.files.test_dirty import creased_face
+from tests.known_faces import creased_face
 from tests.model_files import write_labelled
 from tests.reference_shapes import kernel_face, kernel_lip, strip, write_products
 

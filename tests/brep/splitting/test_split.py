@@ -1,14 +1,11 @@
 import numpy as np
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
-from OCP.Geom import Geom_BezierSurface, Geom_Circle, Geom_Plane
-from OCP.GeomConvert import GeomConvert
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt, gp_Pnt2d
-from OCP.ShapeFix import ShapeFix_Face
-from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.Geom import Geom_Plane
+from OCP.gp import gp_Pln, gp_Pnt2d
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.cutting.by_grid import line_edge
@@ -18,33 +15,11 @@ from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import FUZZY, area_of, require_whole, split_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.known_faces import RADIUS, disc, spline_plane
 from tests.model_files import write_shape
 
-RADIUS = 500.0
 AREA = np.pi * RADIUS**2
 LOST = 1e-6  # part of the area
-
-
-def spline_plane():
-    poles = TColgp_Array2OfPnt(1, 2, 1, 2)
-    for row, x in enumerate((-RADIUS, RADIUS), start=1):
-        for column, y in enumerate((-RADIUS, RADIUS), start=1):
-            poles.SetValue(row, column, gp_Pnt(x, y, 0.0))
-    return GeomConvert.SurfaceToBSplineSurface_s(Geom_BezierSurface(poles))
-
-
-def disc(surface):
-    """A disc as the readers make it: on a spline surface its border runs up to 0.8 mm beside the circle."""
-    circle = Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0)), RADIUS)
-    if not isinstance(surface, gp_Pln):
-        circle = GeomConvert.CurveToBSplineCurve_s(circle)
-    wire = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle).Edge()).Wire()
-    fixing = ShapeFix_Face(BRepBuilderAPI_MakeFace(surface, wire, True).Face())
-    fixing.Perform()
-    fixing.FixOrientation()
-    BRepLib.SameParameter_s(fixing.Face(), 1e-7, True)
-    assert BRepCheck_Analyzer(fixing.Face()).IsValid()
-    return fixing.Face()
 
 
 @pytest.mark.parametrize("surface", [gp_Pln(), spline_plane()], ids=["plane", "spline"])

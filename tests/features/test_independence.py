@@ -1,10 +1,13 @@
 """Features whose unknowns depend on each other are refused when they are made, and told by name."""
 
 import re
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from cadpanel.errors import SettingsError
+from cadpanel.features import independence
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Plane
 
@@ -70,3 +73,15 @@ def test_a_plane_alone_may_be_cut_in_any_way(cuts):
 def test_a_feature_that_leaves_nothing_of_its_patches_to_the_fit_still_has_a_place():
     of = Feature(Plane(width=100.0, turn=0.0), Cylinder(radius=50.0, sweep=0.5), Plane(width=100.0, turn=0.0))
     assert all(of.numbers[i].name.startswith(("anchor", "cut")) for i in of.free)
+
+
+@pytest.mark.parametrize("second", [(1e12, 1.0), (1e-12, 1e-24), (1.0, 0.0)])
+def test_a_feature_is_independent_if_it_is_so_on_one_trial_however_large_its_numbers_on_another(monkeypatch, second):
+    trials = np.array([np.diag((1.0, 1e-3)), np.diag(second)])
+    monkeypatch.setattr(independence, "motions", lambda *_: trials)
+    monkeypatch.setattr(independence, "typical_values", lambda *_: None)
+    feature = SimpleNamespace(name="any", free=(0, 1), numbers=(SimpleNamespace(name="a"), SimpleNamespace(name="b")))
+    independence.refuse_dependent(feature)
+    trials[:] = np.diag((1.0, 1e-12))
+    with pytest.raises(SettingsError, match="depend on each other"):
+        independence.refuse_dependent(feature)

@@ -1,0 +1,50 @@
+"""An end of the skin that runs into itself is found, and one that only turns far is not."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cadpanel.geometry.self_crossing import crosses_itself, end_polyline
+from cadpanel.geometry.shape import ConePatch
+from tests.shapes import CHAINS, folded_panel, moved, random_panel
+
+
+def folded(sweep, flange, radius=100.0):
+    """Plane, cylinder, plane along x: flanges of a length on both sides of a bend."""
+    return folded_panel(radius=radius, sweep=sweep, widths=(flange, flange))
+
+
+@pytest.mark.parametrize("degrees", [190.0, 240.0, 300.0])
+@pytest.mark.parametrize(("part", "crosses"), [(0.95, False), (1.05, True)])
+def test_flanges_that_lean_towards_each_other_cross_from_where_their_lines_meet(degrees, part, crosses):
+    """The tangents at both ends of an arc beyond half a turn meet at radius times the tangent of half of it."""
+    sweep = np.radians(degrees)
+    meet = 100.0 * abs(np.tan(0.5 * sweep))
+    assert crosses_itself(folded(sweep, part * meet)) == crosses
+
+
+@pytest.mark.parametrize("degrees", [30.0, 90.0, 179.0])
+def test_up_to_half_a_turn_nothing_crosses_however_long_the_flanges(degrees):
+    assert not crosses_itself(folded(np.radians(degrees), 5000.0))
+    assert not crosses_itself(folded(np.radians(-degrees), 5000.0, radius=-100.0))
+
+
+@given(seed=st.integers(0, 10_000), chain=st.sampled_from(sorted(CHAINS)))
+def test_the_polyline_runs_through_all_corners_in_the_plane_of_its_end(seed, chain):
+    shape = random_panel(seed, chain=chain)
+    for end in (0, 1):
+        points = end_polyline(shape, end, arc_points=9)
+        np.testing.assert_allclose((points - shape.cut_points[end]) @ shape.cut_normals[end], 0.0, atol=1e-9)
+        corners = shape.corners()[end]
+        away = np.linalg.norm(points[:, None] - corners, axis=-1).min(axis=0)
+        np.testing.assert_allclose(away, 0.0, atol=1e-9)
+        np.testing.assert_allclose(points[[0, -1]], corners[[0, -1]], atol=1e-9)
+        arcs = sum(isinstance(patch, ConePatch) for patch in shape.patches)
+        assert len(points) == len(corners) + 7 * arcs
+
+
+@pytest.mark.parametrize("part", [0.9, 1.1])
+def test_where_a_panel_stands_does_not_matter(part):
+    shape = folded(np.radians(240.0), part * 100.0 * np.tan(np.radians(60.0)))
+    assert crosses_itself(moved(shape, (1e4, -2e4, 3e3))) == crosses_itself(shape) == (part > 1.0)

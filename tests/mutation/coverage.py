@@ -1,0 +1,89 @@
+"""Which tests call which functions, told by a plugin of pytest; and a plugin that keeps to chosen tests."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Collection, Generator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import CodeType, FrameType
+
+import pytest
+
+Calls = dict[str, list[int]]  # by file, the first lines of the functions that were called
+
+
+@dataclass(eq=False)
+class Recorder:
+    """Notes for each test which functions of some files it calls, and how long it takes, in seconds.
+
+    What fixtures call that several tests share is noted for the first of them alone.
+    """
+
+    root: Path
+    paths: Collection[str]
+    out: Path
+    calls: dict[str, Calls] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    _codes: set[CodeType] = field(default_factory=set)
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None]:
+        self._codes = set()
+        before = sys.gettrace()
+        sys.settrace(self._called)
+        try:
+            yield
+        finally:
+            sys.settrace(before)
+        names = {str((self.root / path).resolve()): path for path in self.paths}
+        found: Calls = {}
+        for code in self._codes:
+            if code.co_filename in names:
+                found.setdefault(names[code.co_filename], []).append(code.co_firstlineno)
+        self.calls[item.nodeid] = found
+
+    def _called(self, frame: FrameType, _event: str, _argument: object) -> None:
+        self._codes.add(frame.f_code)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
+
+    def pytest_sessionfinish(self) -> None:
+        self.out.write_text(json.dumps({"calls": self.calls, "seconds": self.seconds}), encoding="utf-8")
+
+
+@dataclass(eq=False)
+class Chosen:
+    """Runs some of the tests alone."""
+
+    tests: Collection[str]
+
+    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
+        items[:] = [item for item in items if item.nodeid in self.tests]
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """What the recorder found."""
+
+    calls: Mapping[str, Calls]
+    seconds: Mapping[str, float]
+
+    @classmethod
+    def read(cls, path: Path) -> Coverage:
+        return cls(**json.loads(path.read_text(encoding="utf-8")))
+
+    def tests_of(self, path: str, function: tuple[int, int]) -> set[str]:
+        """The tests that call what stands between two lines; for (0, 0) those that call anything in the file."""
+        first, last = function if any(function) else (1, sys.maxsize)
+        return {
+            test
+            for test, found in self.calls.items()
+            if any(first <= line <= last for line in found.get(path, ()) if line > 1 or not any(function))
+        }
+
+    def took(self, file: str, tests: Collection[str]) -> float:
+        """How long those of the tests take that stand in a file, seconds."""
+        return sum(self.seconds[test] for test in tests if test.partition("::")[0] == file)

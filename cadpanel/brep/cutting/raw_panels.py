@@ -10,7 +10,6 @@ from typing import cast
 import numpy as np
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_SOLID
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.cutting.ways import cut_surfaces
@@ -24,7 +23,7 @@ from cadpanel.brep.files.packing import PackedProducts
 from cadpanel.brep.files.step import STEP
 from cadpanel.brep.files.units import refuse_given, unit_missing
 from cadpanel.brep.isolation.client import read_guarded
-from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
@@ -155,7 +154,7 @@ def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...
 def _sample(named: Sequence[tuple[str, TopoDS_Shape]], source: str) -> list[RawPanel]:
     """Sample some panels' faces, or say which of them has none that can be sampled, and why."""
     for name, shape in named:
-        if TopExp_Explorer(shape, TopAbs_SOLID).More():
+        if shapes_of(shape, TopAbs_SOLID):
             raise PanelError(
                 name,
                 f"in '{source}', it is a solid: export only the faces of its skin, not the solid, or choose them.",

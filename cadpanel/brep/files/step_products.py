@@ -20,9 +20,8 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_FACE, TopAbs_SHELL
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
@@ -30,6 +29,7 @@ from cadpanel.brep.files.model import NamedShape, Products
 from cadpanel.brep.files.names import call_panels
 from cadpanel.brep.files.step_damage import damage
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.shapes import children, shapes_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
@@ -191,30 +191,16 @@ def instance_name(use: TDF_Label) -> str:
 def split_groups(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     """Split a file's only product into its compounds and shells, where it holds more than the faces of one panel."""
     whole = shape
-    children = _children(shape)
-    while shape.ShapeType() == TopAbs_COMPOUND and len(children) == 1:
-        shape = children[0]
-        children = _children(shape)
-    groups = [child for child in children if child.ShapeType() in (TopAbs_COMPOUND, TopAbs_SHELL)]
-    if shape.ShapeType() != TopAbs_COMPOUND or len(groups) < len(children) or all(map(_is_one_face, groups)):
+    members = list(children(shape))
+    while shape.ShapeType() == TopAbs_COMPOUND and len(members) == 1:
+        shape = members[0]
+        members = list(children(shape))
+    groups = [child for child in members if child.ShapeType() in (TopAbs_COMPOUND, TopAbs_SHELL)]
+    if shape.ShapeType() != TopAbs_COMPOUND or len(groups) < len(members) or all(map(_is_one_face, groups)):
         return [whole]
     return groups
 
 
-def _children(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    """Return the direct sub-shapes, placed."""
-    children = []
-    iterator = TopoDS_Iterator(shape)
-    while iterator.More():
-        children.append(iterator.Value())
-        iterator.Next()
-    return children
-
-
 def _is_one_face(shape: TopoDS_Shape) -> bool:
     """Tell whether a shape holds exactly one face."""
-    explorer = TopExp_Explorer(shape, TopAbs_FACE)
-    if not explorer.More():
-        return False
-    explorer.Next()
-    return not explorer.More()
+    return len(shapes_of(shape, TopAbs_FACE)) == 1

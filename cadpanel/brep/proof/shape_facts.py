@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +11,14 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
-from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
+from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.sheet import volume_of
+from cadpanel.brep.kernel.shapes import edges_of, faces_of, shapes_of
 from cadpanel.geometry.curve_hausdorff import CurvePieces
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
@@ -64,7 +64,7 @@ class ShapeFacts:
 
 def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     """Measure one shape; slow only in the kernel's own check, 1 to 6 ms a panel."""
-    faces = [TopoDS.Face_s(face) for face in _explore(shape, TopAbs_FACE)]
+    faces = faces_of(shape)
     surfaces = [_surface(face) for face in faces]
     kinds = Counter(kind for kind, _ in surfaces)
     edges = _edges_with_faces(faces)
@@ -72,11 +72,11 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     straight = [found for found in shared if found is not None]
     border = [_border(edge) for edge, owners in edges if len(owners) == 1]
     pieces = [found for found in border if found is not None]
-    solids = _count(shape, TopAbs_SOLID)
+    solids = len(shapes_of(shape, TopAbs_SOLID))
     return ShapeFacts(
         name=name,
         solids=solids,
-        shells=_count(shape, TopAbs_SHELL),
+        shells=len(shapes_of(shape, TopAbs_SHELL)),
         valid=BRepCheck_Analyzer(shape, True, False, True).IsValid(),
         closed=all(len(owners) == 2 for _, owners in edges),
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
@@ -88,17 +88,6 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         border_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
         other_borders=len(border) - len(pieces),
     )
-
-
-def _explore(shape: TopoDS_Shape, kind: object) -> Iterator[TopoDS_Shape]:
-    explorer = TopExp_Explorer(shape, kind)
-    while explorer.More():
-        yield explorer.Current()
-        explorer.Next()
-
-
-def _count(shape: TopoDS_Shape, kind: object) -> int:
-    return sum(1 for _ in _explore(shape, kind))
 
 
 def _vertices(shape: TopoDS_Shape) -> Array:
@@ -114,10 +103,10 @@ def _edges_with_faces(faces: list[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[
     known = TopTools_IndexedMapOfShape()
     found: list[tuple[TopoDS_Edge, list[int]]] = []
     for index, face in enumerate(faces):
-        for edge in _explore(face, TopAbs_EDGE):
+        for edge in edges_of(face):
             place = known.Add(edge)
             if place > len(found):
-                found.append((TopoDS.Edge_s(edge), []))
+                found.append((edge, []))
             found[place - 1][1].append(index)
     return found
 

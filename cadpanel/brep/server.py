@@ -19,8 +19,7 @@ from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import format_of
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.files.packing import PackedModel, PackedProducts
-from cadpanel.brep.files.step import STEP
-from cadpanel.brep.files.step_products import read_products
+from cadpanel.brep.files.step import STEP, read_products
 from cadpanel.brep.isolation.client import HEADER, WORKED_ON, Request, Task, Work, read_here
 from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of
 from cadpanel.errors import CadpanelError, ReferenceFileError

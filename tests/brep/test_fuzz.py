@@ -14,9 +14,10 @@ from cadpanel.brep.cutting.by_mesh import load_mesh
 from cadpanel.brep.files.catalogue import FORMATS
 from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label
-from cadpanel.brep.isolation import client
+from cadpanel.brep.isolation import requests
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
+from cadpanel.brep.survey import survey
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.brep.test_network import curve
@@ -88,7 +89,8 @@ def damaged(data, seed):
     "name", ["products.step", "labelled.step", "faces.iges", "text.brep", "binary.bin.brep", "sphere.3dm"]
 )
 def test_damaged_file_gives_panels_or_one_sentence(originals, tmp_path, monkeypatch, name, capfd):
-    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_WORK", SECONDS)
     path = tmp_path / name
     read, sentences = 0, []
     for seed in range(VARIANTS):
@@ -97,7 +99,7 @@ def test_damaged_file_gives_panels_or_one_sentence(originals, tmp_path, monkeypa
             if name == "products.step":
                 read_raw_panels(path)
             else:
-                load_model(path)
+                survey(path)
             read += 1
         except CadpanelError as error:
             sentences.append(str(error))
@@ -131,8 +133,8 @@ def lines(folder):
 )
 def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatch, seeds, ways):
     """What was read may still be nothing that can be cut: bent, empty or far away."""
-    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
-    monkeypatch.setattr(client, "SECONDS_TO_WORK", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_WORK", SECONDS)
     path = tmp_path / "text.brep"
     settings = {"divide": 3, "grid": (2, 2), "network": lines}
     sentences = []

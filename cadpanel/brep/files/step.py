@@ -37,7 +37,8 @@ def read_products(path: Path, millimetres: float | None = None) -> Products:
     parts, unit = _parts(path, millimetres, labels=False)
     names = call_panels([(part.product, part.instance) for part in parts])
     shapes = tuple(NamedShape(name, part.shape) for name, part in zip(names, parts, strict=True))
-    return Products(shapes=shapes, unit=unit)
+    notes = (unit_missing(path.name),) if unit is None and millimetres is None else ()
+    return Products(source=path.name, shapes=shapes, unit=unit, notes=notes)
 
 
 def _read(path: Path, millimetres: float | None) -> Model:

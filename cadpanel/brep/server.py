@@ -1,4 +1,4 @@
-"""What the guarded interpreter does: read, cut and measure files that another one names."""
+"""What the guarded interpreter does: read, cut, measure and inspect files that another one names."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 import pickle
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
@@ -17,6 +17,7 @@ from cadpanel.brep.files.loading import load_model, load_reference
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
+from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
@@ -54,7 +55,16 @@ def survey(request: Request, go_on: GoOn) -> Survey:
     return measured(model, how)
 
 
-WORKS: dict[str, Callable[[Request, GoOn], object]] = {"panels": panels, "survey": survey}
+INSPECTOR = Inspector()
+WORKS: dict[str, Callable[[Request, GoOn], object]] = {
+    "panels": panels,
+    "survey": survey,
+    "open": lambda request, _: INSPECTOR.open(request.path),
+    "facts": lambda request, _: INSPECTOR.facts(request.path, cast(Sequence[int], request.argument)),
+    "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),
+    "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
+    "close": lambda _request, _: INSPECTOR.close(),
+}
 """What can be asked for."""
 
 

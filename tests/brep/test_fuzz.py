@@ -18,8 +18,9 @@ from cadpanel.brep.isolation import requests
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.survey import survey
-from cadpanel.errors import CadpanelError
+from cadpanel.errors import CadpanelError, DeliveryError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.brep.test_certificate import Delivery, strip
 from tests.brep.test_network import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
@@ -148,6 +149,25 @@ def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatc
                 sentences.append(str(error))
     assert sentences
     assert [said for said in sentences if "text.brep" not in said and "lines.brep" not in said] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", ["panels_step", "skins_step"])
+def test_damaged_delivery_is_refused_or_does_not_hold(tmp_path, file):
+    """Over what seed 125 leaves of the panels, the kernel crashes."""
+    delivery = Delivery(tmp_path, strip())
+    path = getattr(delivery, file)
+    whole, ends = path.read_bytes(), []
+    for seed in range(100, 130):
+        path.write_bytes(damaged(whole, seed))
+        try:
+            ends.append(str(delivery.certify().holds))
+        except DeliveryError as error:
+            ends.append(str(error))
+    assert len({*ends} - {"True"}) > 1
+    assert [said for said in ends if said not in ("True", "False") and path.name not in said] == []
+    path.write_bytes(whole)
+    assert delivery.certify().holds
 
 
 def test_damaged_mesh_is_read_or_refused(tmp_path):

@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.building.chain_skin import build_skin
 from cadpanel.brep.building.sheet import build_panel, build_solid, volume_of
-from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.proof.inspection import inspect
 from cadpanel.errors import PanelError
 from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.kink import edge_angles, surface_normals

@@ -16,7 +16,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 
 from cadpanel.brep.building.chain_skin import build_skin
 from cadpanel.brep.building.sheet import build_solid, volume_of
-from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.proof.inspection import inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.brep.step.text import real, string
 from cadpanel.errors import DeliveryError

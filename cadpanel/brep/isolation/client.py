@@ -42,9 +42,16 @@ class Interpreter:
         self._said: IO[bytes] | None = None
         self._frames: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._listener: threading.Thread | None = None
+        self._killed = False
 
     def start(self) -> subprocess.Popen[bytes]:
-        """Return the running interpreter, a new one if there is none."""
+        """Return the running interpreter, a new one if there is none.
+
+        Raises:
+            RuntimeError: it was killed for good.
+        """
+        if self._killed:
+            raise RuntimeError("the second interpreter was killed")
         if self._process is None or self._process.poll() is not None:
             self._end()
             self._said = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the interpreter runs
@@ -121,6 +128,13 @@ class Interpreter:
         """End the interpreter."""
         with self._lock:
             self._end()
+
+    def kill(self) -> None:
+        """End the interpreter for good, at once, whoever waits for its answer; that one is told that it has died."""
+        self._killed = True
+        process = self._process
+        if process is not None:
+            process.kill()
 
     def _end(self) -> None:
         process, self._process = self._process, None

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.brep.files.step_reader import StepFault, read_document
+from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
 from cadpanel.brep.files.xcaf import products_of
 from cadpanel.brep.step.products import Schema, step_file
 from cadpanel.brep.step.topology import UnsupportedGeometry
@@ -84,13 +84,22 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     Raises:
         DeliveryError: if the file is missing, not STEP, cut short, or damaged.
     """
-    with step_shapes(path, heal=heal) as shapes:
-        return shapes
+    return open_step(path, heal=heal).shapes
 
 
-@contextmanager
-def step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> Iterator[list[tuple[str, TopoDS_Shape]]]:
-    """The same, and the kernel's reader is kept for as long as the shapes are worked on: see `StepDocument`."""
+@dataclass(frozen=True, slots=True)
+class OpenStep:
+    """A file's products with their names, in its order.
+
+    The kernel's reader is kept for as long as the shapes are worked on: see `StepDocument`.
+    """
+
+    document: StepDocument
+    shapes: list[tuple[str, TopoDS_Shape]]
+
+
+def open_step(path: str | os.PathLike[str], *, heal: bool = False) -> OpenStep:
+    """The same, for longer work on the shapes."""
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"{target} cannot be read: there is no such file.")
@@ -104,4 +113,4 @@ def step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> Iterator
     shapes = products_of(step.document)
     if not shapes:
         raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
-    yield shapes
+    return OpenStep(step, shapes)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from OCP.TopAbs import TopAbs_FACE
 
-from cadpanel.brep.cutting.ways import cut_surfaces
+from cadpanel.brep.cutting.ways import cut_surfaces, load_drawn
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.model import Label, Model, Part
@@ -35,7 +35,7 @@ def cut(model, **how):
     wanted = ReferenceSettings(**how)
     skin, mended = skin_faces(select_faces(model, wanted.faces), model.source, wanted.seam_tolerance)
     surfaces, gaps = surfaces_of(skin, model.source, wanted.seam_tolerance)
-    done = cut_surfaces(model, surfaces, wanted, Path(model.source))
+    done = cut_surfaces(model, surfaces, wanted, load_drawn(model, wanted, Path(model.source)))
     return done.panels, (*mended, *gaps, *done.notes)
 
 

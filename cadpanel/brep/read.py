@@ -10,10 +10,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
-from cadpanel.brep.cutting.raw_panels import RawReference, has_products
+from cadpanel.brep.cutting.raw_panels import RawReference
 from cadpanel.brep.cutting.ways import REMEDIES
-from cadpanel.brep.files.catalogue import checked_format_of
-from cadpanel.brep.isolation.client import Held, work_guarded
+from cadpanel.brep.isolation.client import work_guarded
 from cadpanel.errors import OutlineError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import Reference
@@ -52,6 +51,4 @@ def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None)
         PanelError: a product is a solid, holds no face, or holds one that cannot be sampled.
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
-    checked_format_of(path)
-    held = Held("products" if has_products(path, how) else "model", path, how.millimetres)
-    return cast(RawReference, work_guarded("panels", path, how, held))
+    return cast(RawReference, work_guarded("panels", path, how))

@@ -1,156 +1,118 @@
-"""What the guarded interpreter does: read, cut and measure files that another one names."""
+"""What the guarded interpreter does: read, cut, measure and inspect files that another one names."""
 
 from __future__ import annotations
 
-import math
 import os
 import pickle
-import resource
 import sys
 import traceback
-from collections.abc import Sequence
-from dataclasses import replace
-from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence
 from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
-from OCP.TopAbs import TopAbs_FACE
-from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.brep.faces.sampling import sample_faces
-from cadpanel.brep.files.catalogue import format_of
-from cadpanel.brep.files.packing import PackedModel, PackedProducts
-from cadpanel.brep.files.step import STEP
-from cadpanel.brep.files.step_products import read_products
-from cadpanel.brep.isolation.client import HEADER, WORKED_ON, Request, Task, Work, read_here
-from cadpanel.brep.kernel.placement import placed
-from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of
-from cadpanel.errors import CadpanelError, ReferenceFileError
+from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
+from cadpanel.brep.cutting.ways import load_drawn
+from cadpanel.brep.files.loading import load_model, load_reference
+from cadpanel.brep.files.model import Model
+from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
+from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
+from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
+from cadpanel.brep.survey import Survey, measured
+from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
-
-def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:
-    """Read a file and pack what it holds.
-
-    Raises:
-        ReferenceFileError: the kernel cannot read it.
-    """
-    if task == "products":
-        products = read_products(path, millimetres)
-        names = tuple(product.name for product in products.shapes)
-        whole = _placed(path.name, [product.shape for product in products.shapes])
-        return PackedProducts(names=names, unit=products.unit, shapes=packed(whole))
-    form = format_of(path)
-    model = form.read(path, millimetres)
-    whole = _placed(path.name, [part.shape for part in model.parts])
-    if form is not STEP:
-        _try_out(path.name, whole)
-    bare = tuple(replace(part, shape=None) for part in model.parts)
-    return PackedModel(model=replace(model, parts=bare), shapes=packed(whole))
+GoOn = Callable[[], None]
+"""Tells whoever asked that the next stage begins."""
 
 
-def _placed(source: str, shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
-    """All shapes of a file as one compound without locations: what they share stays shared."""
-    try:
-        return placed(compound_of(shapes))
-    except Standard_Failure as error:
-        raise ReferenceFileError(
-            f"'{source}' puts a shape where the CAD kernel cannot put it ({error}): place it without a mirror or a "
-            "scale and export again."
-        ) from error
-
-
-def _try_out(source: str, whole: TopoDS_Shape) -> None:
-    """Evaluate every face here, where a crash of the kernel does no harm.
-
-    The STEP reader checks what it builds, and of 1500 damaged files none crashed later; the other readers take shapes
-    over as they are.
-    """
-    for face in shapes_of(whole, TopAbs_FACE):
-        try:
-            sample_faces(face)
-        except (Standard_Failure, ValueError, FloatingPointError) as error:
-            raise ReferenceFileError(
-                f"'{source}' holds a face that the CAD kernel cannot evaluate ({error}): repair the reference and "
-                "export it again."
-            ) from error
-
-
-WORDS: dict[Work, str] = {"panels": "cutting", "survey": "measuring"}
-
-# Files that were read to be worked on next.
-_held: dict[tuple[Task, Path, float | None], PackedModel | PackedProducts] = {}
-
-
-def held_or_read(task: Task, path: Path, millimetres: float | None) -> PackedModel | PackedProducts:
-    """What was read before, else what is read now.
+def panels(request: Request, go_on: GoOn) -> RawReference:
+    """Read a reference, and what is drawn beside it, and cut it.
 
     Raises:
-        ReferenceFileError: the kernel cannot read it.
+        CadpanelError: one of them is refused.
     """
-    held = _held.get((task, path, millimetres))
-    return read(task, path, millimetres) if held is None else held
+    how = cast(ReferenceSettings, request.argument)
+    found = load_reference(request.path, how)
+    drawn = None
+    if isinstance(found, Model):
+        if how.beside(request.path) is not None:
+            go_on()
+        drawn = load_drawn(found, how, request.path)
+    go_on()
+    return raw_panels(found, how, drawn)
 
 
-def answer(request: Request) -> object:
-    """Do what is asked.
+def survey(request: Request, go_on: GoOn) -> Survey:
+    """Read a file and measure what it holds.
 
     Raises:
-        CadpanelError: the file, or what is asked, is refused.
+        CadpanelError: it is refused.
     """
+    how = cast(ReferenceSettings, request.argument)
+    model = load_model(request.path, how.millimetres)
+    go_on()
+    return measured(model, how)
+
+
+INSPECTOR = Inspector()
+WORKS: dict[str, Callable[[Request, GoOn], object]] = {
+    "panels": panels,
+    "survey": survey,
+    "open": lambda request, _: INSPECTOR.open(request.path),
+    "facts": lambda request, _: INSPECTOR.facts(request.path, cast(Sequence[int], request.argument)),
+    "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),
+    "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
+    "close": lambda _request, _: INSPECTOR.close(),
+}
+"""What can be asked for."""
+
+
+class _Stages:
+    """The stages of a request, one after the other, each with the time that it has."""
+
+    def __init__(self, request: Request, answers: BinaryIO) -> None:
+        self._left: Iterator[Stage] = iter(request.stages)
+        self._answers = answers
+        self.now = next(self._left)
+        limit_time(self.now.seconds)
+
+    def go_on(self) -> None:
+        self._answers.write(NEXT_STAGE)
+        self._answers.flush()
+        self.now = next(self._left)
+        limit_time(self.now.seconds)
+
+
+def answer(request: Request, answers: BinaryIO) -> object:
+    """Do what is asked, or say why not."""
     os.chdir(request.folder)
-    _limit(request.seconds)
-    if request.kind == "work":
-        try:
-            return _work(cast(Work, request.task), request.path, cast(ReferenceSettings, request.argument))
-        finally:
-            _held.clear()
-    task, millimetres = cast(Task, request.task), cast("float | None", request.argument)
-    found = read(task, request.path, millimetres)
-    if request.kind == "read":
-        return found
-    _held.clear()
-    _held[task, request.path, millimetres] = found
-    return None
-
-
-def _limit(seconds: float) -> None:
-    """Let the system end this interpreter once all processors have been busy for so long."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    soft = used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)
-    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
-    if hard == resource.RLIM_INFINITY or soft < hard:
-        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(soft), hard))
-
-
-def _work(work: Work, path: Path, settings: ReferenceSettings) -> object:
-    # Here, as both modules read files themselves.
-    from cadpanel.brep.cutting.raw_panels import raw_panels
-    from cadpanel.brep.survey import measured
-
     try:
-        return raw_panels(path, settings) if work == "panels" else measured(path, settings)
+        return _done(request, _Stages(request, answers))
+    except CadpanelError as error:
+        return error
+    finally:
+        stop_limit()
+
+
+def _done(request: Request, stages: _Stages) -> object:
+    try:
+        return WORKS[request.work](request, stages.go_on)
     except CadpanelError:
         raise
     except Exception as error:
         # Of the kernel, or over arrays that a damaged file fills with nonsense. Python shows the note, a command not.
-        what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {WORDS[work]} fail"
-        refusal = ReferenceFileError(f"'{path.name}' makes {what} ({str(error) or type(error).__name__}): {WORKED_ON}.")
+        stage = stages.now
+        what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {stage.doing} fail"
+        refusal = stage.refusal(f"'{stage.file}' makes {what} ({str(error) or type(error).__name__}): {stage.remedy}.")
         refusal.add_note(traceback.format_exc())
         raise refusal from error
 
 
 def serve(requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer one request after the other until none comes."""
-    read_here(held_or_read)
     while header := requests.read(HEADER.size):
-        found: object
-        try:
-            found = answer(pickle.loads(requests.read(HEADER.unpack(header)[0])))
-        except CadpanelError as error:
-            found = error
-        data = pickle.dumps(found)
-        answers.write(HEADER.pack(len(data)) + data)
+        answers.write(framed(answer(pickle.loads(requests.read(HEADER.unpack(header)[0])), answers)))
         answers.flush()
 
 

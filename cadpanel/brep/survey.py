@@ -22,11 +22,9 @@ from OCP.GeomAbs import (
 
 from cadpanel.brep.curves.drawn_curve import sampled
 from cadpanel.brep.faces.face_patch import Patch, lengths_along
-from cadpanel.brep.files.catalogue import checked_format_of
 from cadpanel.brep.files.face_choice import select_faces
-from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label, Model
-from cadpanel.brep.isolation.client import Held, work_guarded
+from cadpanel.brep.isolation.client import work_guarded
 from cadpanel.brep.skin.adjacency import Surface, surfaces_of
 from cadpanel.brep.skin.cross_sections import sections_of
 from cadpanel.brep.skin.curvature import Curvature, curvature_of
@@ -146,13 +144,11 @@ def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Surve
         SettingsError: the path is no name of a file.
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
-    checked_format_of(path)
-    return cast(Survey, work_guarded("survey", path, how, Held("model", path, how.millimetres)))
+    return cast(Survey, work_guarded("survey", path, how))
 
 
-def measured(path: Path, how: ReferenceSettings) -> Survey:
-    """The same in this interpreter, which the kernel may crash over a damaged file."""
-    model = load_model(path, how.millimetres)
+def measured(model: Model, how: ReferenceSettings) -> Survey:
+    """The same of a model in this interpreter, which the kernel may crash over a damaged file."""
     skin, mended = _skin(model, how)
     surfaces, gaps = surfaces_of(skin, model.source, how.seam_tolerance, SMOOTH) if skin else ((), ())
     curves = sampled(model.curves(), model.source, np.zeros(3))

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import steps
 
@@ -24,7 +25,8 @@ def verify(
     """
     with steps(quiet=quiet) as shown:
         shown.begin("Read back and verify", folder.name)
-        # Here, not above: neither help nor a refusal should wait for the CAD kernel.
+        start_reader()
+        # Here, not above: help should not wait for them.
         from cadpanel.cli.tables import console, print_certificate
         from cadpanel.delivery.verify import verify as verify_delivery
 

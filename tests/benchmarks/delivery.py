@@ -167,6 +167,7 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
         timed(seconds, "write", write_both)
         certificate = timed(seconds, "verify", lambda: prove(folder, reference, built, helper))
         before = now().processor
+        stop_reader()
     count_interpreter(seconds, "verify", before)
     if not certificate.holds:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.errors import PanelError
-from cadpanel.geometry.chain_checks import LARGEST_HALF_ANGLE, LARGEST_RADIUS, check_skin
+from cadpanel.geometry.chain_checks import LARGEST_HALF_ANGLE, LARGEST_RADIUS, check_chain
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.sheet_checks import check_buildable
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
@@ -224,7 +224,7 @@ def test_a_half_angle_is_refused_from_just_beyond_the_largest_one_on(side):
 
     def said(half_angle):
         with pytest.raises(PanelError) as refused:
-            check_skin(folded_panel(half_angle=side * half_angle))
+            check_chain(folded_panel(half_angle=side * half_angle))
         return str(refused.value)
 
     assert "the half angle of patch 2" not in said(LARGEST_HALF_ANGLE)
@@ -236,7 +236,7 @@ def test_a_radius_is_refused_from_just_beyond_the_largest_one_on(side):
     def said(radius):
         sweep = side * 300.0 / radius
         try:
-            check_skin(folded_panel(radius=side * radius, sweep=sweep))
+            check_chain(folded_panel(radius=side * radius, sweep=sweep))
         except PanelError as error:
             return str(error)
         return ""

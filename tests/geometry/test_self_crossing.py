@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.self_crossing import crosses_itself, end_polyline
-from cadpanel.geometry.shape import ConePatch
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 

@@ -10,12 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface, Geom_Plane, Geom_Surface
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from scipy.interpolate import BSpline
 
 from cadpanel.arrays import Array
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import integer_array, pole_array_2d, real_array
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
 
 ARC_DEGREE = 11
@@ -155,16 +154,8 @@ def _interpolation(poles: int) -> _Interpolation:
 
 
 def _spline(poles: Array, knots: Array, section: EllipticSection) -> Geom2d_BSplineCurve:
-    kernel_poles = TColgp_Array1OfPnt2d(1, len(poles))
-    for index, (u, v) in enumerate(poles.tolist(), start=1):
-        kernel_poles.SetValue(index, kernel.point_2d(u, v))
-    kernel_knots = TColStd_Array1OfReal(1, len(knots))
-    multiplicities = TColStd_Array1OfInteger(1, len(knots))
-    multiplicities.Init(1)
     scaled = section.start + (section.stop - section.start) * knots
     scaled[-1] = section.stop
-    for index, knot in enumerate(scaled.tolist(), start=1):
-        kernel_knots.SetValue(index, knot)
-    for end in (1, len(knots)):
-        multiplicities.SetValue(end, ARC_DEGREE + 1)
-    return Geom2d_BSplineCurve(kernel_poles, kernel_knots, multiplicities, ARC_DEGREE)
+    counts = np.ones(len(knots), dtype=np.intp)
+    counts[[0, -1]] = ARC_DEGREE + 1
+    return Geom2d_BSplineCurve(pole_array_2d(poles), real_array(scaled), integer_array(counts), ARC_DEGREE)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -61,15 +61,15 @@ class Curve:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveFile:
-    """The loose curves of a file beside a reference, its name, and what should be known of how it was read."""
+    """The loose curves by which a reference is cut, the name of their file, and what should be known of its reading."""
 
     source: str
     curves: tuple[Curve, ...]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
 
-def load_curves(path: Path, reference: Model, millimetres: float | None) -> CurveFile:
-    """The loose curves of a file, in the coordinates of a reference.
+def curves_beside(path: Path, reference: Model, millimetres: float | None) -> CurveFile:
+    """The loose curves of a file beside a reference, in the reference's coordinates.
 
     Args:
         path: a file of any format.
@@ -80,15 +80,28 @@ def load_curves(path: Path, reference: Model, millimetres: float | None) -> Curv
         ReferenceFileError: the file cannot be read, or holds no loose curves.
     """
     model = load_model(path, millimetres, near_origin=False, beside_unitless=not reference.own_unit)
+    return replace(_curves(model, -np.array(reference.origin)), notes=model.notes)
+
+
+def own_curves(reference: Model) -> CurveFile:
+    """The loose curves of a reference itself; what is known of it need not be said again.
+
+    Raises:
+        ReferenceFileError: it holds none.
+    """
+    return _curves(reference, np.zeros(3))
+
+
+def _curves(model: Model, shift: Array) -> CurveFile:
     loose = model.curves()
     if not loose:
         raise ReferenceFileError(
-            f"'{path.name}' holds no loose curves, only faces: export the lines between the panels as curves."
+            f"'{model.source}' holds no loose curves, only faces: export the lines between the panels as curves."
         )
-    curves = sampled(loose, path.name, -np.array(reference.origin))
+    curves = sampled(loose, model.source, shift)
     if not curves:
-        raise ReferenceFileError(f"'{path.name}' holds only curves without length: draw them again.")
-    return CurveFile(source=model.source, curves=curves, notes=model.notes)
+        raise ReferenceFileError(f"'{model.source}' holds only curves without length: draw them again.")
+    return CurveFile(source=model.source, curves=curves)
 
 
 def sampled(loose: Sequence[ModelCurve], source: str, shift: Array) -> tuple[Curve, ...]:

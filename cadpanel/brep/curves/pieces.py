@@ -11,13 +11,12 @@ import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_C1
 from OCP.gp import gp_Pnt, gp_Vec
-from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS_Edge
 from scipy.interpolate import make_interp_spline
 
 from cadpanel.arrays import Array
 from cadpanel.brep.curves.polyline_smoothing import FACET, SmoothCurve, corners, missed, smooth_curve
-from cadpanel.brep.kernel.splines import DEGREE
+from cadpanel.brep.kernel.splines import DEGREE, curve_breaks
 from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.geometry.vectors import norm, unit
 
@@ -65,7 +64,7 @@ def smooth_pieces(edge: TopoDS_Edge) -> tuple[Piece, ...]:
         Standard_Failure: the kernel cannot evaluate it.
     """
     curve = BRepAdaptor_Curve(edge)
-    breaks = _breaks(curve)
+    breaks = curve_breaks(curve, GeomAbs_C1)  # where the derivative may jump
     knots = _knots(curve, breaks)
     ends, facets = _turns(curve, breaks, knots)
     closed = bool(norm(np.diff(_values(curve, ends[[0, -1]]), axis=0))[0] <= CLOSE)
@@ -118,13 +117,6 @@ def _ways(curve: BRepAdaptor_Curve, parameters: Array) -> Array:
         curve.D1(place, point, way)
         ways.append(way.Coord())
     return np.array(ways)
-
-
-def _breaks(curve: BRepAdaptor_Curve) -> Array:
-    """Both ends and the parameters between them at which the derivative may jump, rising."""
-    array = TColStd_Array1OfReal(1, curve.NbIntervals(GeomAbs_C1) + 1)
-    curve.Intervals(array, GeomAbs_C1)
-    return np.array([array.Value(place) for place in range(1, array.Length() + 1)])
 
 
 def _turns(curve: BRepAdaptor_Curve, breaks: Array, knots: Array) -> tuple[Array, Array]:

@@ -52,11 +52,13 @@ class Mesh:
     """A mesh.
 
     Attributes:
+        source: the name of its file.
         corners: (n, 3) in the reference's coordinates, mm.
         faces: the corners of each face, in order round it.
         notes: what was done to it, one sentence each.
     """
 
+    source: str
     corners: Array
     faces: tuple[tuple[int, ...], ...]
     notes: tuple[str, ...] = ()
@@ -131,7 +133,7 @@ def load_mesh(path: Path, origin: Array, millimetres: float | None, tolerance: f
         notes.append(f"{joined} corners of '{path.name}' lie within {tolerance:g} mm of another one and count as one.")
     if edges:
         notes.append(f"{edges} edges of '{path.name}' are parted where corners of other faces lie on them.")
-    return Mesh(corners=points, faces=shared, notes=tuple(notes))
+    return Mesh(source=path.name, corners=points, faces=shared, notes=tuple(notes))
 
 
 def require_near(mesh: Mesh, surfaces: Sequence[Surface], mesh_source: str, source: str) -> None:

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import cast
+from dataclasses import dataclass
 
 import numpy as np
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_SOLID
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.brep.cutting.ways import cut_surfaces
+from cadpanel.brep.cutting.ways import Drawn, cut_surfaces
 from cadpanel.brep.faces.sampling import sample_panels
-from cadpanel.brep.files.catalogue import checked_format_of
 from cadpanel.brep.files.face_choice import select_faces
-from cadpanel.brep.files.loading import far_origin, load_model, origin_note
-from cadpanel.brep.files.model import Model, NamedShape
+from cadpanel.brep.files.model import Model, NamedShape, Products
 from cadpanel.brep.files.names import unique_names
-from cadpanel.brep.files.packing import PackedProducts
-from cadpanel.brep.files.step import STEP
-from cadpanel.brep.files.units import refuse_given, unit_missing
-from cadpanel.brep.isolation.client import read_guarded
-from cadpanel.brep.kernel.shapes import compound_of
-from cadpanel.brep.kernel.transforms import shifted
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
 from cadpanel.brep.skin.panel_cleanup import gap_notes, mend_panels
@@ -50,46 +40,25 @@ class RawReference:
     notes: tuple[str, ...]
 
 
-def raw_panels(path: Path, how: ReferenceSettings) -> RawReference:
-    """Read a file into sampled faces, panel by panel, in millimetres.
+def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | None = None) -> RawReference:
+    """Cut and sample what a file holds into faces, panel by panel, in millimetres.
 
     Without a way to cut the surface, panels are the file's products in their order. Those without a name are called
     "panel 1", "panel 2" by their place in the file; of several with one name the second becomes "name (2)", and so on.
 
+    Args:
+        found: as `load_reference` reads it.
+        how: the settings by which it was read.
+        drawn: as `load_drawn` gives it, what the surface is cut by.
+
     Raises:
-        ReferenceFileError: the file cannot be read, holds no faces, or cannot be cut as asked.
+        ReferenceFileError: the file holds no faces, or cannot be cut as asked.
         PanelError: a product is a solid, holds no face, or holds one that cannot be sampled.
     """
-    if how.way is not None:
-        return _cut_panels(path, how)
-    if has_products(path, how):
-        return _product_panels(path, how)
-    return _part_panels(load_model(path, how.millimetres), how)
-
-
-def has_products(path: Path, how: ReferenceSettings) -> bool:
-    """Whether each product of the file is to be a panel.
-
-    Raises:
-        ReferenceFileError: there is no such file, or it has no format that is known.
-    """
-    return how.way is None and how.faces is None and checked_format_of(path) is STEP
-
-
-def _product_panels(path: Path, how: ReferenceSettings) -> RawReference:
-    """The products of a STEP file as panels."""
-    found = cast(PackedProducts, read_guarded("products", path, how.millimetres)).unpack()
-    if found.unit is not None and how.millimetres is not None:
-        raise refuse_given(path.name, found.unit)
-    notes = [unit_missing(path.name)] if found.unit is None and how.millimetres is None else []
-    products = found.shapes
-    origin = far_origin([product.shape for product in products], path.name)
-    if origin is not None:
-        back = (-origin[0], -origin[1], -origin[2])
-        products = tuple(replace(product, shape=shifted(product.shape, back)) for product in products)
-        notes.append(origin_note(path.name, origin))
-    panels, mended = _mended(products, path.name, how.seam_tolerance)
-    return RawReference(panels=panels, notes=(*notes, *mended))
+    if isinstance(found, Products):
+        panels, mended = _mended(found.shapes, found.source, how.seam_tolerance)
+        return RawReference(panels=panels, notes=(*found.notes, *mended))
+    return _part_panels(found, how) if how.way is None else _cut_panels(found, how, drawn)
 
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
@@ -113,14 +82,13 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
     return RawReference(panels=panels, notes=(*model.notes, *mended, *gaps))
 
 
-def _cut_panels(path: Path, settings: ReferenceSettings) -> RawReference:
-    """The chosen faces of a file, cut into panels."""
-    model = load_model(path, settings.millimetres, beside_unitless=settings.beside(path) is not None)
+def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) -> RawReference:
+    """The chosen faces of a model, cut into panels."""
     skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
-    cut = cut_surfaces(model, surfaces, settings, path)
+    cut = cut_surfaces(model, surfaces, settings, drawn)
     shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]
-    notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # the reference may be read as a spine, too
+    notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # of several surfaces the same may be said
     return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
 
 
@@ -155,7 +123,7 @@ def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...
 def _sample(named: Sequence[tuple[str, TopoDS_Shape]], source: str) -> list[RawPanel]:
     """Sample some panels' faces, or say which of them has none that can be sampled, and why."""
     for name, shape in named:
-        if TopExp_Explorer(shape, TopAbs_SOLID).More():
+        if shapes_of(shape, TopAbs_SOLID):
             raise PanelError(
                 name,
                 f"in '{source}', it is a solid: export only the faces of its skin, not the solid, or choose them.",

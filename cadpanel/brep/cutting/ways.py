@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from cadpanel.brep.curves.drawn_curve import Curve, load_curves, sampled
+from cadpanel.brep.curves.drawn_curve import Curve, CurveFile, curves_beside, own_curves, sampled
 from cadpanel.brep.curves.projection import land_curves
 from cadpanel.brep.cutting.by_grid import cut_grid
 from cadpanel.brep.cutting.by_length import cut_lengths, cut_lip
-from cadpanel.brep.cutting.by_mesh import LAY_OVER, load_mesh, require_all_panels, require_near
+from cadpanel.brep.cutting.by_mesh import LAY_OVER, Mesh, load_mesh, require_all_panels, require_near
 from cadpanel.brep.cutting.by_network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.cutting.by_stations import cut_stations, spine_of
 from cadpanel.brep.cutting.cut_panel import CutPanel
@@ -43,24 +43,58 @@ class Cut:
     notes: tuple[str, ...] = ()
 
 
+Drawn = CurveFile | Mesh
+"""What a surface is cut by, or its stations are measured along, as drawn in the reference or in a file beside it."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Skin:
-    """What is cut: surfaces of a model, the file that it came from, and how to cut."""
+    """What is cut: surfaces of a model, how, and by what is drawn for it."""
 
     model: Model
     surfaces: Sequence[Surface]
     settings: ReferenceSettings
-    file: Path
+    drawn: Drawn | None
 
 
-def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, file: Path) -> Cut:
+def load_drawn(model: Model, settings: ReferenceSettings, file: Path) -> Drawn | None:
+    """What the surface is to be cut by; None where the settings ask for nothing that is drawn.
+
+    Args:
+        model: the reference.
+        settings: with a way to cut.
+        file: where the model came from; if it is the file with the curves, too, it is not read again.
+
+    Raises:
+        ReferenceFileError: there is nothing of the kind, or its file cannot be read.
+    """
+    beside, millimetres = settings.beside(file), settings.millimetres
+    if settings.mesh is not None:
+        return load_mesh(settings.mesh, np.array(model.origin), millimetres, settings.seam_tolerance)
+    if beside is not None:
+        return curves_beside(beside, model, millimetres)
+    if settings.spine is not None:
+        return own_curves(model)
+    if settings.network is not None:
+        curves = sampled(model.curves(), model.source, np.zeros(3))
+        if not curves:
+            raise ReferenceFileError(
+                f"'{model.source}' holds no loose curves that could cut its surface: draw them in."
+            )
+        return CurveFile(source=model.source, curves=curves)
+    return None
+
+
+def cut_surfaces(
+    model: Model, surfaces: Sequence[Surface], settings: ReferenceSettings, drawn: Drawn | None = None
+) -> Cut:
     """Cut every surface the way that the settings ask for.
 
     Args:
         model: the file's content.
         surfaces: the skin, in faces that hang together.
         settings: with one way to cut.
-        file: where the model came from.
+        drawn: what it is cut by, as `load_drawn` gives it.
 
     Raises:
         ReferenceFileError: a surface cannot be cut that way.
@@ -68,7 +102,7 @@ def cut_surfaces(model: Model, surfaces: Sequence[Surface], settings: ReferenceS
     """
     if settings.way is None:
         raise SettingsError(f"no way to cut '{model.source}' was asked for")
-    return WAYS[settings.way](_Skin(model=model, surfaces=surfaces, settings=settings, file=file))
+    return WAYS[settings.way](_Skin(model=model, surfaces=surfaces, settings=settings, drawn=drawn))
 
 
 def _lengths(skin: _Skin) -> Cut:
@@ -95,31 +129,24 @@ def _grid(skin: _Skin) -> Cut:
 
 def _stations(skin: _Skin) -> Cut:
     how = skin.settings
-    found = None if how.spine is None else load_curves(how.spine, skin.model, how.millimetres)
-    spine = None if found is None else spine_of(found)
+    spine = spine_of(skin.drawn) if isinstance(skin.drawn, CurveFile) else None
     stations, tolerance = how.stations or (), how.seam_tolerance
     cut = [cut_stations(surface, stations, spine, skin.model.source, tolerance) for surface in skin.surfaces]
-    return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=found.notes if found else ())
+    notes = () if skin.drawn is None else skin.drawn.notes
+    return Cut(panels=tuple(panel for panels in cut for panel in panels), notes=notes)
 
 
 def _network(skin: _Skin) -> Cut:
-    file = skin.settings.network or skin.file
-    if skin.settings.beside(skin.file) is None:
-        curves = sampled(skin.model.curves(), file.name, np.zeros(3))
-        if not curves:
-            raise ReferenceFileError(f"'{file.name}' holds no loose curves that could cut its surface: draw them in.")
-        return _cut_by_curves(skin, curves, file.name, DRAW_ON)
-    found = load_curves(file, skin.model, skin.settings.millimetres)
-    return _cut_by_curves(skin, found.curves, file.name, DRAW_ON, found.notes)
+    assert isinstance(skin.drawn, CurveFile)
+    return _cut_by_curves(skin, skin.drawn.curves, skin.drawn.source, DRAW_ON, skin.drawn.notes)
 
 
 def _mesh(skin: _Skin) -> Cut:
-    file = skin.settings.mesh or skin.file
-    origin = np.array(skin.model.origin)
-    mesh = load_mesh(file, origin, skin.settings.millimetres, skin.settings.seam_tolerance)
-    require_near(mesh, skin.surfaces, file.name, skin.model.source)
-    cut = _cut_by_curves(skin, mesh.curves(), file.name, LAY_OVER, mesh.notes)
-    require_all_panels(mesh, cut.panels, file.name, skin.model.source)
+    mesh = skin.drawn
+    assert isinstance(mesh, Mesh)
+    require_near(mesh, skin.surfaces, mesh.source, skin.model.source)
+    cut = _cut_by_curves(skin, mesh.curves(), mesh.source, LAY_OVER, mesh.notes)
+    require_all_panels(mesh, cut.panels, mesh.source, skin.model.source)
     return cut
 
 

@@ -19,14 +19,13 @@ from OCP.GeomAbs import (
     GeomAbs_Plane,
 )
 from OCP.gp import gp_Pnt2d, gp_Vec2d
-from OCP.TColStd import TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.faces.surface_batch import SurfaceBatch
-from cadpanel.brep.kernel.shapes import shapes_of
-from cadpanel.brep.kernel.splines import breaks_of, spans_of
+from cadpanel.brep.kernel.shapes import edges_of
+from cadpanel.brep.kernel.splines import breaks_of, curve_breaks, spans_of
 from cadpanel.geometry.vectors import cross, norm
 
 # Gauss points along each span of a border: as many as the degree of a spline, for which a plane comes out exactly, and
@@ -146,12 +145,12 @@ def _across(face: TopoDS_Face) -> int:
 def _border(face: TopoDS_Face) -> tuple[Array, Array]:
     """Points (m, 2) of a face's border in the parameter plane, and (m,) the steps in v that they stand for."""
     ends, steps = [np.zeros((0, 2))], [np.zeros(0)]
-    for shape in shapes_of(face, TopAbs_EDGE):
+    for edge in edges_of(face):
         # An edge inside the face, on none of its borders, is neither.
-        if shape.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
+        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
             continue
-        side = -1.0 if shape.Orientation() == TopAbs_REVERSED else 1.0
-        curve = BRepAdaptor_Curve2d(TopoDS.Edge_s(shape), face)
+        side = -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0
+        curve = BRepAdaptor_Curve2d(edge, face)
         breaks = _breaks(curve)
         nodes, weights = _gauss(_along(curve, len(breaks) - 1))
         halves = 0.5 * np.diff(breaks)
@@ -178,9 +177,7 @@ def _breaks(curve: BRepAdaptor_Curve2d) -> Array:
     """Both ends of a border's curve and its knots between them."""
     if curve.GetType() == GeomAbs_Line:
         return np.array([curve.FirstParameter(), curve.LastParameter()])
-    array = TColStd_Array1OfReal(1, curve.NbIntervals(GeomAbs_CN) + 1)
-    curve.Intervals(array, GeomAbs_CN)
-    return np.array([array.Value(place) for place in range(1, array.Length() + 1)])
+    return curve_breaks(curve, GeomAbs_CN)
 
 
 def _values(curve: BRepAdaptor_Curve2d, places: Array) -> tuple[Array, Array]:

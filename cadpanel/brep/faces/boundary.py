@@ -10,12 +10,12 @@ import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED
-from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.surface_batch import SurfaceBatch, kernel_values
+from cadpanel.brep.kernel.shapes import edges_of
 from cadpanel.geometry.vectors import cross, norm, unit
 
 # Points an edge at first, and at most. Each further pass may double their segments, so the number stays odd.
@@ -135,12 +135,9 @@ def _curves(face: TopoDS_Face) -> Iterator[tuple[BRepAdaptor_Curve2d, float]]:
     The explorer turns edges round with their face, so that a face has its inside to the left of them all, seen from
     where its normals point.
     """
-    explorer = TopExp_Explorer(face, TopAbs_EDGE)
-    while explorer.More():
-        edge = TopoDS.Edge_s(explorer.Current())
+    for edge in edges_of(face):
         if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
             yield BRepAdaptor_Curve2d(edge, face), -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0
-        explorer.Next()
 
 
 def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, side: float, left: float) -> Edge:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_C1
-from OCP.TColStd import TColStd_Array1OfReal
 
 from cadpanel.arrays import Array
 from cadpanel.brep.faces.boundary import evaluate, unit_normals
 from cadpanel.brep.faces.face_patch import Patch
+from cadpanel.brep.kernel.splines import breaks_of, spans_of
 
 # Places along a parameter line at which both sides of it are compared, and how far beside it they are looked at, as a
 # part of the parameter range.
@@ -24,7 +24,7 @@ def crease_of(patch: Patch) -> float:
     most = 0.0
     for axis in (0, 1):
         low, high = patch.bounds[axis]
-        for value in _breaks(patch.surface, axis):
+        for value in breaks_of(patch.surface, axis, GeomAbs_C1)[1:-1].tolist():
             if not low + 2.0 * BESIDE * (high - low) < value < high - 2.0 * BESIDE * (high - low):
                 continue
             part = (value - low) / (high - low)
@@ -37,19 +37,9 @@ def crease_of(patch: Patch) -> float:
 
 def has_breaks(surface: BRepAdaptor_Surface) -> bool:
     """Whether a surface is not C1 somewhere inside its range; only such a one can have a crease, and few do."""
-    return int(surface.NbUIntervals(GeomAbs_C1)) > 1 or int(surface.NbVIntervals(GeomAbs_C1)) > 1
+    return max(spans_of(surface, GeomAbs_C1)) > 1
 
 
 def _normals(patch: Patch, axis: int, part: float) -> Array:
     _, along_u, along_v = evaluate(patch.surface, patch.at(axis, np.array(part), PLACES))
     return unit_normals(along_u, along_v)[0]
-
-
-def _breaks(surface: BRepAdaptor_Surface, axis: int) -> list[float]:
-    """Parameters inside the range at which the surface is not C1."""
-    count = (surface.NbUIntervals if axis == 0 else surface.NbVIntervals)(GeomAbs_C1)
-    if count < 2:
-        return []
-    found = TColStd_Array1OfReal(1, count + 1)
-    (surface.UIntervals if axis == 0 else surface.VIntervals)(found, GeomAbs_C1)
-    return [found.Value(index) for index in range(2, count + 1)]

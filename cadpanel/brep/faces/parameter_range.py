@@ -11,12 +11,11 @@ import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepTools import BRepTools
 from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
-from OCP.TColStd import TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_EDGE
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.arrays import Array
-from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.shapes import edges_of
+from cadpanel.brep.kernel.splines import curve_breaks
 
 # Parts of each span of a border at first, and of the stretch around its farthest point later on.
 PARTS = 8
@@ -28,7 +27,7 @@ TIGHT = 1e-9
 def parameter_range(face: TopoDS_Face) -> Array:
     """The least and largest parameter (2, 2) of a face, by u and v."""
     loose = np.array(BRepTools.UVBounds_s(face)).reshape(2, 2)
-    curves = [BRepAdaptor_Curve2d(TopoDS.Edge_s(edge), face) for edge in shapes_of(face, TopAbs_EDGE)]
+    curves = [BRepAdaptor_Curve2d(edge, face) for edge in edges_of(face)]
     if not curves:
         return loose
     margin = TIGHT * np.ptp(loose, axis=1)
@@ -48,9 +47,7 @@ def _around(points: Sequence[Array]) -> Array:
 
 def _farthest(curve: BRepAdaptor_Curve2d) -> Array:
     """Points (k, 2) of a border, among them those in which it reaches farthest each way."""
-    array = TColStd_Array1OfReal(1, curve.NbIntervals(GeomAbs_CN) + 1)
-    curve.Intervals(array, GeomAbs_CN)
-    breaks = np.array([array.Value(place) for place in range(1, array.Length() + 1)])
+    breaks = curve_breaks(curve, GeomAbs_CN)
     places = np.interp(np.arange(PARTS * (len(breaks) - 1) + 1) / PARTS, np.arange(len(breaks)), breaks)
     points = _values(curve, places.tolist())
     found = [points]

@@ -17,10 +17,10 @@ from OCP.GeomProjLib import GeomProjLib
 from OCP.gp import gp_Pnt
 from OCP.ShapeFix import ShapeFix_ShapeTolerance
 from OCP.TopAbs import TopAbs_EDGE
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from cadpanel.brep.kernel.points import TOLERANCE
-from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.shapes import edges_of
 
 # An edge whose tolerance or whose parameter curve's distance is larger has that curve laid anew, mm.
 COARSE = 1e-3
@@ -32,8 +32,7 @@ CHECKED_POINTS = 65
 
 def sharpen_trims(face: TopoDS_Face) -> None:
     """Lay the parameter curves of a face's coarse edges anew where that brings them nearer, in place."""
-    for shape in shapes_of(face, TopAbs_EDGE):
-        edge = TopoDS.Edge_s(shape)
+    for edge in edges_of(face):
         if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
             _sharpen(edge, face)
 

@@ -13,9 +13,8 @@ import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.gp import gp_Pnt2d
-from OCP.TopAbs import TopAbs_FACE, TopAbs_IN, TopAbs_REVERSED
-from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
+from OCP.TopAbs import TopAbs_IN, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.arc_length_grid import (
@@ -31,6 +30,7 @@ from cadpanel.brep.faces.arc_length_grid import (
 from cadpanel.brep.faces.area import trimmed_areas, whole_areas
 from cadpanel.brep.faces.boundary import Edge, sample_edges, unit_normals
 from cadpanel.brep.faces.surface_batch import SurfaceBatch
+from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.kernel.splines import breaks_of, spans_of
 from cadpanel.reference.model import FaceSamples
 
@@ -99,7 +99,7 @@ def sample_faces(shape: TopoDS_Shape) -> tuple[FaceSamples, ...]:
 
 def sample_panels(shapes: Sequence[TopoDS_Shape]) -> list[tuple[FaceSamples, ...]]:
     """Return the same for each of several panels, worked out together."""
-    faces = [(panel, face) for panel, shape in enumerate(shapes) for face in _faces(shape)]
+    faces = [(panel, face) for panel, shape in enumerate(shapes) for face in faces_of(shape)]
     found: list[list[FaceSamples]] = [[] for _ in shapes]
     if faces:
         panels = np.array([panel for panel, _ in faces])
@@ -109,15 +109,6 @@ def sample_panels(shapes: Sequence[TopoDS_Shape]) -> list[tuple[FaceSamples, ...
         for (panel, _), samples in zip(faces, _sample(measured, SAMPLES_PER_PANEL * parts), strict=True):
             found[panel].append(samples)
     return [tuple(samples) for samples in found]
-
-
-def _faces(shape: TopoDS_Shape) -> list[TopoDS_Face]:
-    faces = []
-    explorer = TopExp_Explorer(shape, TopAbs_FACE)
-    while explorer.More():
-        faces.append(TopoDS.Face_s(explorer.Current()))
-        explorer.Next()
-    return faces
 
 
 def _measure(faces: list[TopoDS_Face]) -> _MeasuredFaces:

@@ -16,9 +16,9 @@ from OCP.Geom import Geom_BSplineSurface, Geom_Surface
 from OCP.GeomAbs import GeomAbs_BezierSurface, GeomAbs_BSplineSurface
 from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Pnt, gp_Vec
-from OCP.TColStd import TColStd_Array1OfReal
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.kernel.splines import numbers
 from cadpanel.geometry.spline_surface import SplineSurface, SplineSurfaces
 
 
@@ -95,13 +95,13 @@ class SurfaceBatch:
 def kernel_values(surface: BRepAdaptor_Surface, parameters: Array) -> Array:
     """(p, 3, 3) the point and the derivatives by u and by v, mm, at (p, 2) parameters, one after the other."""
     point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-    numbers: list[float] = []
+    values: list[float] = []
     for u, v in parameters.tolist():
         surface.D1(u, v, point, along_u, along_v)
-        numbers += point.Coord()
-        numbers += along_u.Coord()
-        numbers += along_v.Coord()
-    return np.array(numbers, dtype=np.float64).reshape(-1, 3, 3)
+        values += point.Coord()
+        values += along_u.Coord()
+        values += along_v.Coord()
+    return np.array(values, dtype=np.float64).reshape(-1, 3, 3)
 
 
 def _placement(surface: BRepAdaptor_Surface) -> tuple[float, ...]:
@@ -131,7 +131,7 @@ def _plain(spline: Geom_BSplineSurface) -> SplineSurface:
         poles = np.hstack([weights * poles, weights])
     return SplineSurface(
         degrees=(spline.UDegree(), spline.VDegree()),
-        knots=(_numbers(spline.UKnotSequence()), _numbers(spline.VKnotSequence())),
+        knots=(numbers(spline.UKnotSequence()), numbers(spline.VKnotSequence())),
         poles=poles.reshape(len(rows), len(columns), -1),
         bounds=np.array(spline.Bounds()).reshape(2, 2),
     )
@@ -148,8 +148,3 @@ def _trimmed(whole: SplineSurface, surface: BRepAdaptor_Surface, spline: Geom_BS
     periodic = np.array([spline.IsUPeriodic(), spline.IsVPeriodic()])
     bounds[periodic] = whole.bounds[periodic]
     return replace(whole, bounds=bounds)
-
-
-def _numbers(array: TColStd_Array1OfReal) -> Array:
-    # Not by iteration, which takes the kernel's binding forty times as long.
-    return np.array([array.Value(index) for index in range(array.Lower(), array.Upper() + 1)])

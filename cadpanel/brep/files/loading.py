@@ -1,30 +1,52 @@
-"""From a file in any format to a model: recognised, read in the guarded interpreter, moved near the origin."""
+"""From a file in any format to a model: recognised, checked, read, and moved near the origin.
+
+The kernel may crash over a damaged file: all of this is for the guarded interpreter.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
 from OCP.BRepBndLib import BRepBndLib
 from OCP.Standard import Standard_Failure
+from OCP.TopoDS import TopoDS_Shape
 
+from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import checked_format_of
-from cadpanel.brep.files.model import Model
-from cadpanel.brep.files.packing import PackedModel
+from cadpanel.brep.files.format import Format
+from cadpanel.brep.files.model import Model, Products
+from cadpanel.brep.files.step import STEP, read_products
 from cadpanel.brep.files.units import refuse_given
-from cadpanel.brep.isolation.client import read_guarded
-from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.kernel.placement import placed
+from cadpanel.brep.kernel.shapes import children, compound_of, faces_of
 from cadpanel.brep.kernel.transforms import shifted
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
 
 FAR = 1e7
 """Distance from the origin, mm, from which a model is moved: the kernel's checks fail at map-grid coordinates."""
 WHOLE_METRE = 1000.0
 LARGEST_COORDINATE = 1e12
 """Beyond it, a double keeps less than 0.1 mm."""
+
+
+def load_reference(path: Path, how: ReferenceSettings) -> Model | Products:
+    """Read a reference the way that its settings ask for.
+
+    Returns:
+        The products of a STEP file whose products are the panels, else a model.
+
+    Raises:
+        ReferenceFileError: as `load_model` says.
+    """
+    form = checked_format_of(path)
+    if form is STEP and how.way is None and how.faces is None:
+        return _load_products(path, how.millimetres)
+    return _load(form, path, how.millimetres, beside_unitless=how.beside(path) is not None)
 
 
 def load_model(
@@ -42,8 +64,25 @@ def load_model(
         ReferenceFileError: there is no such file, it is damaged, it holds no shapes, or it has a unit of its own where
             one is given.
     """
-    checked_format_of(path)
-    model = cast(PackedModel, read_guarded("model", path, millimetres)).unpack()
+    form = checked_format_of(path)
+    return _load(form, path, millimetres, near_origin=near_origin, beside_unitless=beside_unitless)
+
+
+def _load(
+    form: Format,
+    path: Path,
+    millimetres: float | None,
+    *,
+    near_origin: bool = True,
+    beside_unitless: bool = False,
+) -> Model:
+    model = form.read(path, millimetres)
+    shapes = _placed([part.shape for part in model.parts], path.name)
+    model = replace(
+        model, parts=tuple(replace(part, shape=shape) for part, shape in zip(model.parts, shapes, strict=True))
+    )
+    if form is not STEP:
+        _try_out(model)
     if millimetres is not None and model.own_unit and not beside_unitless:
         raise refuse_given(path.name, model.unit)
     if not model.parts:
@@ -51,6 +90,48 @@ def load_model(
             f"'{path.name}' holds neither faces nor curves: export the faces of the skin and try again."
         )
     return _near_origin(model) if near_origin else model
+
+
+def _placed(shapes: Sequence[TopoDS_Shape], source: str) -> list[TopoDS_Shape]:
+    """The shapes of a file without locations, all at once: what they share stays shared."""
+    try:
+        return list(children(placed(compound_of(shapes))))
+    except Standard_Failure as error:
+        raise ReferenceFileError(
+            f"'{source}' puts a shape where the CAD kernel cannot put it ({error}): place it without a mirror or a "
+            "scale and export again."
+        ) from error
+
+
+def _try_out(model: Model) -> None:
+    """Refuse faces that the kernel cannot evaluate.
+
+    The STEP reader checks what it builds; the other readers take shapes over as they are.
+    """
+    for part in model.parts:
+        for face in faces_of(part.shape):
+            try:
+                sample_faces(face)
+            except (Standard_Failure, ValueError, FloatingPointError) as error:
+                raise ReferenceFileError(
+                    f"'{model.source}' holds a face that the CAD kernel cannot evaluate ({error}): repair the "
+                    "reference and export it again."
+                ) from error
+
+
+def _load_products(path: Path, millimetres: float | None) -> Products:
+    found = read_products(path, millimetres)
+    placed_shapes = _placed([product.shape for product in found.shapes], path.name)
+    named = zip(found.shapes, placed_shapes, strict=True)
+    found = replace(found, shapes=tuple(replace(product, shape=shape) for product, shape in named))
+    if found.unit is not None and millimetres is not None:
+        raise refuse_given(path.name, found.unit)
+    origin = far_origin([product.shape for product in found.shapes], path.name)
+    if origin is None:
+        return found
+    back = (-origin[0], -origin[1], -origin[2])
+    shapes = tuple(replace(product, shape=shifted(product.shape, back)) for product in found.shapes)
+    return replace(found, shapes=shapes, notes=(*found.notes, origin_note(path.name, origin)))
 
 
 def _near_origin(model: Model) -> Model:

@@ -162,9 +162,13 @@ class Products:
     """The panels of a file.
 
     Attributes:
+        source: the file's name.
         shapes: placed, in file order, mm.
         unit: the file's unit of length in its own words; None where it says none.
+        notes: what was done to it or should be known of it, one sentence each.
     """
 
+    source: str
     shapes: tuple[NamedShape, ...]
     unit: str | None
+    notes: tuple[str, ...] = ()

@@ -24,13 +24,13 @@ from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface, Geom_Curve
 from OCP.GeomAPI import GeomAPI_ProjectPointOnCurve
 from OCP.gp import gp_Pnt
 from OCP.ShapeFix import ShapeFix_Face
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
+from cadpanel.brep.kernel.splines import knot_arrays, pole_array, pole_grid, real_array, real_grid
 
 # How far a trimming curve may run off its surface, in units of the file: Rhino's own default tolerances are smaller.
 TRIM_TOLERANCE = 1e-2
@@ -60,19 +60,18 @@ def surface(source: RhinoObject) -> Geom_BSplineSurface:
     points = [[nurbs.Points.GetControlPoint(i, j) for j in range(count_v)] for i in range(count_u)]
     numbers = np.array([[(point.X, point.Y, point.Z, point.W) for point in row] for row in points])
     poles, weights = _from_homogeneous(numbers)
-    kernel_poles, kernel_weights = (
-        TColgp_Array2OfPnt(1, count_u, 1, count_v),
-        TColStd_Array2OfReal(1, count_u, 1, count_v),
-    )
-    for i in range(count_u):
-        for j in range(count_v):
-            kernel_poles.SetValue(i + 1, j + 1, gp_Pnt(*poles[i, j].tolist()))
-            kernel_weights.SetValue(i + 1, j + 1, float(weights[i, j]))
     degree_u, degree_v = nurbs.OrderU - 1, nurbs.OrderV - 1
     knots_u, multiplicities_u = _knots(nurbs.KnotsU, degree_u)
     knots_v, multiplicities_v = _knots(nurbs.KnotsV, degree_v)
     return Geom_BSplineSurface(
-        kernel_poles, kernel_weights, knots_u, knots_v, multiplicities_u, multiplicities_v, degree_u, degree_v
+        pole_grid(poles),
+        real_grid(weights),
+        knots_u,
+        knots_v,
+        multiplicities_u,
+        multiplicities_v,
+        degree_u,
+        degree_v,
     )
 
 
@@ -88,12 +87,8 @@ def curve(source: RhinoObject) -> Geom_BSplineCurve:
     count = len(nurbs.Points)
     numbers = np.array([(point.X, point.Y, point.Z, point.W) for point in (nurbs.Points[i] for i in range(count))])
     poles, weights = _from_homogeneous(numbers)
-    kernel_poles, kernel_weights = TColgp_Array1OfPnt(1, count), TColStd_Array1OfReal(1, count)
-    for index in range(count):
-        kernel_poles.SetValue(index + 1, gp_Pnt(*poles[index].tolist()))
-        kernel_weights.SetValue(index + 1, float(weights[index]))
     knots, multiplicities = _knots(nurbs.Knots, nurbs.Degree)
-    return Geom_BSplineCurve(kernel_poles, kernel_weights, knots, multiplicities, nurbs.Degree)
+    return Geom_BSplineCurve(pole_array(poles), real_array(weights), knots, multiplicities, nurbs.Degree)
 
 
 def curve_edge(source: RhinoObject) -> TopoDS_Edge:
@@ -201,11 +196,8 @@ def _knots(source: RhinoObject, degree: int) -> tuple[TColStd_Array1OfReal, TCol
     given = np.array([source[index] for index in range(len(source))])
     if not np.isfinite(given).all():
         raise ConversionError("a knot is not a number")
-    values, counts = np.unique(np.concatenate([given[:1], given, given[-1:]]), return_counts=True)
+    sequence = np.concatenate([given[:1], given, given[-1:]])
+    values, counts = np.unique(sequence, return_counts=True)
     if len(values) < 2 or (np.diff(given) < 0.0).any() or counts.max() > degree + 1:
         raise ConversionError("its knots do not rise")
-    knots, multiplicities = TColStd_Array1OfReal(1, len(values)), TColStd_Array1OfInteger(1, len(values))
-    for index, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True), start=1):
-        knots.SetValue(index, value)
-        multiplicities.SetValue(index, count)
-    return knots, multiplicities
+    return knot_arrays(sequence)

@@ -9,7 +9,7 @@ from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Builder
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS_Compound, TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
 
 def shapes_of(
@@ -24,14 +24,24 @@ def shapes_of(
     return found
 
 
+def faces_of(shape: TopoDS_Shape) -> list[TopoDS_Face]:
+    """The faces, in the explorer's order."""
+    return [TopoDS.Face_s(face) for face in shapes_of(shape, TopAbs_FACE)]
+
+
+def edges_of(shape: TopoDS_Shape) -> list[TopoDS_Edge]:
+    """The edges, in the explorer's order, each once for every face that it bounds; a seam twice."""
+    return [TopoDS.Edge_s(edge) for edge in shapes_of(shape, TopAbs_EDGE)]
+
+
 def loose_edges(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     """The edges that bound no face."""
     return shapes_of(shape, TopAbs_EDGE, TopAbs_FACE)
 
 
-def children(shape: TopoDS_Shape) -> Iterator[TopoDS_Shape]:
-    """The direct sub-shapes, placed."""
-    iterator = TopoDS_Iterator(shape)
+def children(shape: TopoDS_Shape, *, oriented: bool = True) -> Iterator[TopoDS_Shape]:
+    """The direct sub-shapes, placed; turned round with the shape, or as they are stored in it."""
+    iterator = TopoDS_Iterator(shape, oriented, True)
     while iterator.More():
         yield iterator.Value()
         iterator.Next()

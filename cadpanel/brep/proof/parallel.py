@@ -1,30 +1,25 @@
-"""Reads and inspects the two files of a delivery with a second interpreter, if it pays.
+"""Reads and inspects the two files of a delivery in the guarded interpreter, and in one more, if that pays.
 
-The second one reads the skins while the first reads the panels; then both inspect panels until none is left. A shape's
-facts do not depend on who found them: shapes go over in the kernel's binary form, which keeps every digit. It takes
-about 2 s to load the kernel, so whoever knows in time that files will be inspected starts it before.
+A file may be damaged as well as a reference may, so neither is read here. The one more reads the skins while the other
+one reads the panels; then both inspect panels until none is left. It takes about 2 s to load the kernel, so whoever
+knows in time that files will be inspected starts it before.
 """
 
 from __future__ import annotations
 
 import os
-import pickle
-import subprocess
-import sys
+import queue
+import threading
 from collections import deque
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import cast
 
-from OCP.TopoDS import TopoDS_Shape
-
-from cadpanel.brep.isolation.interpreter import interpreter
-from cadpanel.brep.kernel.shapes import packed, unpacked
-from cadpanel.brep.proof.shape_facts import ShapeFacts, inspect
-from cadpanel.brep.step.file import step_shapes
+from cadpanel.brep.isolation.client import READER, Interpreter
+from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, seconds_to_read
+from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.errors import DeliveryError
 
 WORTHWHILE_BYTES = 4_000_000
@@ -32,81 +27,92 @@ WORTHWHILE_BYTES = 4_000_000
 WORTHWHILE_PANELS = 400
 """Panels whose skins make a file of that size."""
 CHUNK = 16
-"""Shapes handed over at once, about 0.1 s of work."""
-PIPE_BYTES = 1 << 20
+"""Shapes asked for at once, about 0.1 s of work."""
+AHEAD = 2
+"""Chunks that lie ready for the helper, so that it never waits for one to be packed."""
+WRITE_AGAIN = "it is damaged; write the delivery again"
 
-Shapes = list[tuple[str, TopoDS_Shape]]
+Chunk = tuple[list[int], object]
+
+
+class _File:
+    """A file of a delivery, and the interpreter that has it."""
+
+    def __init__(self, interpreter: Interpreter, path: Path) -> None:
+        self._interpreter, self._path = interpreter, path
+
+    def ask(self, work: str, argument: object = None, *, reads: bool = False) -> object:
+        """Ask for some work with the file.
+
+        Raises:
+            DeliveryError: it cannot be read, or the kernel crashes over it or does not end.
+        """
+        seconds = seconds_to_read(self._path) if reads else SECONDS_TO_WORK
+        stage = Stage(
+            file=self._path.name,
+            doing="reading" if reads else "inspection",
+            seconds=seconds,
+            remedy=WRITE_AGAIN,
+            crashed=WRITE_AGAIN,
+            refusal=DeliveryError,
+        )
+        request = Request(work=work, folder=Path.cwd(), path=self._path, argument=argument, stages=(stage,))
+        return self._interpreter.ask(request)
+
+    def open(self) -> int:
+        """Read it; returns the number of its shapes."""
+        return cast(int, self.ask("open", reads=True))
+
+    def facts(self, places: Sequence[int]) -> list[ShapeFacts]:
+        """Facts of some of its shapes."""
+        return cast(list[ShapeFacts], self.ask("facts", places))
+
+    def all_facts(self) -> list[ShapeFacts]:
+        """Read it and inspect all of it."""
+        found = self.facts(range(self.open()))
+        self.ask("close")
+        return found
 
 
 class Helper:
-    """A second interpreter that loads the kernel, then inspects what it is told to."""
+    """An interpreter that inspects files beside the one that reads them."""
 
-    def __init__(self, process: subprocess.Popen[bytes]) -> None:
-        self._process = process
-        self._begun: Path | None = None
+    def __init__(self, interpreter: Interpreter) -> None:
+        self._interpreter = interpreter
+        self._clerk = ThreadPoolExecutor(max_workers=1)
+        self._begun: tuple[Path, Future[list[ShapeFacts]]] | None = None
 
-    def begin(self, skins: Path) -> None:
-        """Let it read and inspect the file of skins, from now on; whether it can shows when its facts are asked for."""
-        self._begun = skins
-        try:
-            self._send(os.fspath(skins))
-        except OSError:
-            self._process.kill()
+    def begin(self, skins: Path) -> Future[list[ShapeFacts]]:
+        """Let it read and inspect the file of skins, from now on."""
+        if self._begun is None or self._begun[0] != skins:
+            self._begun = skins, self._clerk.submit(_File(self._interpreter, skins).all_facts)
+        return self._begun[1]
 
-    def facts(self, skins: Path, work: _Work) -> list[ShapeFacts] | None:
-        """The skins' facts; then it takes shapes from `work` until none is left. None if it gave up before."""
-        if self._begun != skins:
-            self.begin(skins)
-        found: list[ShapeFacts] | None = None
-        try:
-            found = self._receive()
-            while taken := work.take():
-                self._send([(work.shapes[index][0], packed(work.shapes[index][1])) for index in taken])
-                work.facts.update(zip(taken, self._receive(), strict=True))
-        except (OSError, EOFError, pickle.UnpicklingError):
-            self.kill()  # whatever is missing, the caller does itself
-        return found
+    def join(self, panels: Path, work: _Work) -> Future[None]:
+        """Let it take chunks of panels from `work` after that, until none comes any more."""
+        return self._clerk.submit(work.help, _File(self._interpreter, panels))
 
-    def kill(self) -> None:
+    def end(self) -> None:
         """End it at once."""
-        self._process.kill()
-
-    def _send(self, message: object) -> None:
-        assert self._process.stdin is not None
-        pickle.dump(message, self._process.stdin)
-        self._process.stdin.flush()
-
-    def _receive(self) -> list[ShapeFacts]:
-        assert self._process.stdout is not None
-        received: list[ShapeFacts] = pickle.load(self._process.stdout)
-        return received
+        self._interpreter.kill()
+        self._clerk.shutdown(cancel_futures=True)
+        self._interpreter.stop()
 
 
 @contextmanager
 def second_interpreter(panels: int) -> Iterator[Helper | None]:
-    """Start a helper for a delivery of so many panels, where there is a processor for it and it pays; else None."""
+    """Start what a delivery of so many panels is inspected by; a helper, too, where it pays and has a processor."""
+    READER.start()
     if (os.cpu_count() or 1) < 2 or panels < WORTHWHILE_PANELS:
         yield None
         return
-    command = interpreter(__name__)
-    pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, bufsize=PIPE_BYTES) as process:
-        try:
-            yield Helper(process)
-        except BaseException:
-            process.kill()
-            raise
-        finally:
-            _hang_up(process)
-
-
-def _hang_up(process: subprocess.Popen[bytes]) -> None:
-    """Tell the helper that nothing more comes; one that is gone already needs no telling."""
-    assert process.stdin is not None
+    interpreter = Interpreter()
+    interpreter.start()
+    helper = Helper(interpreter)
     try:
-        process.stdin.close()
-    except OSError:
-        process.kill()
+        yield helper
+    finally:
+        helper.end()
 
 
 def inspect_files(
@@ -117,100 +123,68 @@ def inspect_files(
     Args:
         panels_step: the file of solids.
         skins_step: the file of open shells.
-        helper: a second interpreter that is running already; None to start one if it pays.
+        helper: that is running already; None to start one if it pays.
 
     Raises:
-        DeliveryError: if a file cannot be read.
+        DeliveryError: if a file cannot be read, or the kernel crashes over it or does not end.
     """
-    skins = Path(skins_step)
+    panels, skins = Path(panels_step), Path(skins_step)
     if helper is not None:
-        return _inspect_together(panels_step, skins, helper)
+        return _inspect_together(panels, skins, helper)
     worthwhile = skins.is_file() and skins.stat().st_size >= WORTHWHILE_BYTES
     with second_interpreter(WORTHWHILE_PANELS if worthwhile else 0) as started:
         if started is None:
-            return inspect_file(panels_step), inspect_file(skins_step)
-        return _inspect_together(panels_step, skins, started)
+            return _File(READER, panels).all_facts(), _File(READER, skins).all_facts()
+        return _inspect_together(panels, skins, started)
 
 
-def _inspect_together(
-    panels_step: str | os.PathLike[str], skins: Path, helper: Helper
-) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
-    with step_shapes(panels_step) as shapes, ThreadPoolExecutor(max_workers=1) as clerk:
-        work = _Work(shapes)
-        answer = clerk.submit(helper.facts, skins, work)
-        try:
-            work.do()
-        except BaseException:
-            helper.kill()  # or the clerk would wait for its answers
-            raise
-        skin_facts = answer.result()
-        panel_facts = work.result()
-    return panel_facts, inspect_file(skins) if skin_facts is None else skin_facts
+def _inspect_together(panels: Path, skins: Path, helper: Helper) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
+    work = _Work()
+    of_skins, helped = helper.begin(skins), helper.join(panels, work)
+    try:
+        work.do(_File(READER, panels))
+    finally:
+        work.end()
+    found = of_skins.result()
+    helped.result()
+    return work.facts(), found
 
 
-def inspect_file(path: str | os.PathLike[str]) -> list[ShapeFacts]:
-    """Facts of every shape in one file, in its order."""
-    with step_shapes(path) as shapes:
-        return [inspect(name, shape) for name, shape in shapes]
-
-
-@dataclass(slots=True)
 class _Work:
-    """Shapes to inspect, taken from the front by one interpreter and from the back by the other."""
+    """The shapes of one file, inspected from the front by the interpreter that has it, from the back by a helper."""
 
-    shapes: Shapes
-    waiting: deque[int] = field(init=False)
-    facts: dict[int, ShapeFacts] = field(init=False, default_factory=dict)
+    def __init__(self) -> None:
+        self._facts: dict[int, ShapeFacts] = {}
+        self._ready: queue.SimpleQueue[Chunk | None] = queue.SimpleQueue()
+        self._helped = threading.Event()
 
-    def __post_init__(self) -> None:
-        self.waiting = deque(range(len(self.shapes)))
+    def do(self, file: _File) -> None:
+        """Read the file and inspect what it holds, or have it packed for the helper once that one has time."""
+        waiting = deque(range(file.open()))
+        while waiting:
+            count = min(CHUNK, len(waiting))
+            if self._helped.is_set() and self._ready.qsize() < AHEAD:
+                places = [waiting.pop() for _ in range(count)]
+                self._ready.put((places, file.ask("pack", places)))
+            else:
+                places = [waiting.popleft() for _ in range(count)]
+                self._take(places, file.facts(places))
+        file.ask("close")
 
-    def do(self) -> None:
-        """Inspect from the front until nothing waits."""
-        while True:
-            try:
-                index = self.waiting.popleft()
-            except IndexError:
-                return
-            self.facts[index] = inspect(*self.shapes[index])
+    def help(self, file: _File) -> None:
+        """Inspect chunk after chunk, until none comes any more."""
+        self._helped.set()
+        while (chunk := self._ready.get()) is not None:
+            places, shapes = chunk
+            self._take(places, cast(list[ShapeFacts], file.ask("inspect", shapes)))
 
-    def take(self) -> list[int]:
-        """Up to CHUNK indices from the back."""
-        taken: list[int] = []
-        while len(taken) < CHUNK:
-            try:
-                taken.append(self.waiting.pop())
-            except IndexError:
-                break
-        return taken
+    def end(self) -> None:
+        """Tell the helper that nothing more comes."""
+        self._ready.put(None)
 
-    def result(self) -> list[ShapeFacts]:
-        """All facts in the order of the shapes; what the other interpreter took and kept is inspected now."""
-        return [self.facts.get(index) or inspect(*shape) for index, shape in enumerate(self.shapes)]
+    def facts(self) -> list[ShapeFacts]:
+        """All facts in the order of the shapes."""
+        return [self._facts[place] for place in sorted(self._facts)]
 
-
-def _serve(requests: BinaryIO, answers: BinaryIO) -> None:
-    """What the second interpreter does: the file that it is told first, then every chunk that comes."""
-    try:
-        skins: str = pickle.load(requests)
-        with step_shapes(skins) as shapes:
-            found = [inspect(name, shape) for name, shape in shapes]
-            while True:
-                pickle.dump(found, answers)
-                answers.flush()
-                chunk: list[tuple[str, bytes]] = pickle.load(requests)
-                found = [inspect(name, unpacked(data)) for name, data in chunk]
-    except EOFError:
-        return
-
-
-def main() -> None:
-    """Answer what comes on the standard input."""
-    # Answers go through a channel of their own, as the kernel may print to standard output.
-    channel = os.fdopen(os.dup(sys.stdout.fileno()), "wb", buffering=PIPE_BYTES)
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    try:
-        _serve(sys.stdin.buffer, channel)
-    except DeliveryError:
-        # The caller reads the file itself then, and says what is wrong with it.
-        sys.exit(1)
+    def _take(self, places: Sequence[int], facts: Sequence[ShapeFacts]) -> None:
+        self._facts.update(zip(places, facts, strict=True))

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.TopAbs import TopAbs_FACE
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.faces.creases import crease_of, has_breaks
 from cadpanel.brep.faces.face_patch import patch_of
-from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.skin.adjacency import WORTH_A_NOTE
 from cadpanel.brep.skin.face_cleanup import find_doubles, width_of_hair
 from cadpanel.reference.model import RawPanel
@@ -37,7 +36,7 @@ def mend_panels(
         widths = {place: width_of_hair(face) for place, face in enumerate(panel.faces)}
         narrow = {place: width for place, width in widths.items() if width is not None}
         wide = [place for place, width in widths.items() if width is None]
-        faces = [TopoDS.Face_s(face) for face in shapes_of(shape, TopAbs_FACE)]
+        faces = faces_of(shape)
         doubles = find_doubles([panel.faces[place] for place in wide], [faces[place] for place in wide], tolerance)
         creased += _creases(panel.name, shape, source)
         left_out = {*narrow, *(wide[second] for second in doubles)}
@@ -65,7 +64,7 @@ def mend_panels(
 
 def _creases(name: str, shape: TopoDS_Shape, source: str) -> list[str]:
     found = []
-    for place, face in enumerate(map(TopoDS.Face_s, shapes_of(shape, TopAbs_FACE)), start=1):
+    for place, face in enumerate(faces_of(shape), start=1):
         crease = crease_of(patch_of(face)) if has_breaks(BRepAdaptor_Surface(face)) else 0.0
         if crease:
             found.append(

@@ -15,12 +15,11 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GCPnts import GCPnts_AbscissaPoint
 from OCP.GProp import GProp_GProps
 from OCP.Standard import Standard_Failure
-from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_ListOfShape
 
 from cadpanel.brep.faces.area import enclosed
-from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.shapes import edges_of
 from cadpanel.errors import ReferenceFileError
 
 FUZZY = 1e-3
@@ -118,7 +117,7 @@ def _unsure_area(face: TopoDS_Face, fuzzy: float) -> float:
     An edge's curve in the parameter plane, on which areas are integrated, may lie that far off its curve in space: a
     circle on a spline surface half a millimetre and more, after other programs.
     """
-    edges = [TopoDS.Edge_s(edge) for edge in shapes_of(face, TopAbs_EDGE)]
+    edges = edges_of(face)
     return sum(length_of(edge) * max(fuzzy, float(BRep_Tool.Tolerance_s(edge))) for edge in edges)
 
 

@@ -8,36 +8,18 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from OCP.IFSelect import IFSelect_RetDone
-from OCP.Resource import Resource_DataMapOfAsciiStringAsciiString
-from OCP.STEPCAFControl import STEPCAFControl_Reader
-from OCP.TCollection import TCollection_AsciiString, TCollection_ExtendedString
-from OCP.TDataStd import TDataStd_Name
-from OCP.TDF import TDF_Label, TDF_LabelSequence
-from OCP.TDocStd import TDocStd_Document
+from OCP.Standard import Standard_Failure
 from OCP.TopoDS import TopoDS_Shape
-from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cadpanel.brep.files.step_damage import damage
-from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
+from cadpanel.brep.files.xcaf import products_of
 from cadpanel.brep.step.products import Schema, step_file
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError
-
-HEALING_MODES = (
-    "FixSolidMode",
-    "FixShellMode",
-    "FixFaceMode",
-    "FixSameParameterMode",
-    "FixFreeShellMode",
-    "FixFreeFaceMode",
-    "FixFreeWireMode",
-)
-"""The steps by which the kernel's reader repairs shapes."""
 
 Color = tuple[float, float, float]
 NamedShape = tuple[str, TopoDS_Shape, Color | None]
@@ -102,82 +84,33 @@ def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> lis
     Raises:
         DeliveryError: if the file is missing, not STEP, cut short, or damaged.
     """
-    with step_shapes(path, heal=heal) as shapes:
-        return shapes
+    return open_step(path, heal=heal).shapes
 
 
-@contextmanager
-def step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> Iterator[list[tuple[str, TopoDS_Shape]]]:
-    """The same, and the kernel's reader is kept for as long as the shapes are worked on.
+@dataclass(frozen=True, slots=True)
+class OpenStep:
+    """A file's products with their names, in its order.
 
-    It holds hundreds of thousands of small objects. Once they are given back, memory is in so many pieces that the
-    kernel's exact check takes half as long again.
+    The kernel's reader is kept for as long as the shapes are worked on: see `StepDocument`.
     """
+
+    document: StepDocument
+    shapes: list[tuple[str, TopoDS_Shape]]
+
+
+def open_step(path: str | os.PathLike[str], *, heal: bool = False) -> OpenStep:
+    """The same, for longer work on the shapes."""
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"{target} cannot be read: there is no such file.")
-    silence_kernel()
-    reader = _loaded(target)
-    if not heal:
-        # Only now: reading a file sets them back.
-        reader.SetShapeFixParameters(_no_healing())
-    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
-    if not reader.Transfer(document):
+    try:
+        step = read_document(target, labels=False, heal=heal)
+    except StepFault as error:
+        why = f"is damaged ({error.fault})" if error.fault else "is not a complete STEP file"
+        raise DeliveryError(f"{target} cannot be read: it {why}.") from error
+    except Standard_Failure as error:
+        raise DeliveryError(f"{target} cannot be read: it makes the CAD kernel fail ({error}).") from error
+    shapes = products_of(step.document)
+    if not shapes:
         raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
-    yield _named_shapes(document)
-
-
-def _loaded(target: Path) -> STEPCAFControl_Reader:
-    """A reader of names and shapes that has read the file and found it sound."""
-    reader = STEPCAFControl_Reader()
-    for switch in (reader.SetColorMode, reader.SetLayerMode, reader.SetPropsMode, reader.SetGDTMode, reader.SetMatMode):
-        switch(False)
-    reader.SetNameMode(True)
-    if reader.ReadFile(str(target)) != IFSelect_RetDone:
-        raise DeliveryError(f"{target} cannot be read: it is not a complete STEP file.")
-    fault = damage(reader.Reader().StepModel())
-    if fault is not None:
-        raise DeliveryError(f"{target} cannot be read: it is damaged ({fault}).")
-    return reader
-
-
-def _named_shapes(document: TDocStd_Document) -> list[tuple[str, TopoDS_Shape]]:
-    """The parts of the document's assemblies, and what stands alone in it."""
-    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    free = TDF_LabelSequence()
-    tool.GetFreeShapes(free)
-    found: list[tuple[str, TopoDS_Shape]] = []
-    for label in _labels(free):
-        if XCAFDoc_ShapeTool.IsAssembly_s(label):
-            components = TDF_LabelSequence()
-            XCAFDoc_ShapeTool.GetComponents_s(label, components)
-            found += [(_component_name(part), XCAFDoc_ShapeTool.GetShape_s(part)) for part in _labels(components)]
-        else:
-            found.append((_name(label), XCAFDoc_ShapeTool.GetShape_s(label)))
-    return found
-
-
-def _no_healing() -> Resource_DataMapOfAsciiStringAsciiString:
-    parameters = Resource_DataMapOfAsciiStringAsciiString()
-    for mode in HEALING_MODES:
-        parameters.Bind(TCollection_AsciiString(f"FixShape.{mode}"), TCollection_AsciiString("0"))
-    return parameters
-
-
-def _labels(sequence: TDF_LabelSequence) -> list[TDF_Label]:
-    return [sequence.Value(index) for index in range(1, sequence.Length() + 1)]
-
-
-def _component_name(component: TDF_Label) -> str:
-    """The product's name, which is what the fabricator sees; the instance's may be a mere number."""
-    product = TDF_Label()
-    if XCAFDoc_ShapeTool.GetReferredShape_s(component, product):
-        return _name(product)
-    return _name(component)
-
-
-def _name(label: TDF_Label) -> str:
-    attribute = TDataStd_Name()
-    if not label.FindAttribute(TDataStd_Name.GetID_s(), attribute):
-        return ""
-    return str(attribute.Get().ToExtString())
+    return OpenStep(step, shapes)

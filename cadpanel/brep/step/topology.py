@@ -7,7 +7,6 @@ by 1e-4 mm. On planes it needs none.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from OCP.BRep import BRep_Tool
 from OCP.Geom import Geom_ConicalSurface, Geom_Curve, Geom_CylindricalSurface, Geom_Ellipse, Geom_Line, Geom_Plane
@@ -15,9 +14,10 @@ from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Dir, gp_Pnt
 from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape, TopoDS_Vertex
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
+from cadpanel.brep.kernel.shapes import children
 from cadpanel.brep.step.text import StepText, real, references
 
 
@@ -38,10 +38,10 @@ class TopologyWriter:
 
     def item(self, shape: TopoDS_Shape) -> int:
         """A solid as MANIFOLD_SOLID_BREP, an open shell as SHELL_BASED_SURFACE_MODEL."""
-        shells = list(_children(shape)) if shape.ShapeType() == TopAbs_SOLID else [shape]
+        shells = list(children(shape, oriented=False)) if shape.ShapeType() == TopAbs_SOLID else [shape]
         if len(shells) != 1 or shells[0].ShapeType() != TopAbs_SHELL:
             raise UnsupportedGeometry("neither a solid with one shell nor a shell")
-        found = [TopoDS.Face_s(face) for face in _children(shells[0])]
+        found = [TopoDS.Face_s(face) for face in children(shells[0], oriented=False)]
         surfaces = [self._surface(face) for face in found]
         faces = references([self._face(face, surface) for face, surface in zip(found, surfaces, strict=True)])
         if shape.ShapeType() == TopAbs_SOLID:
@@ -53,10 +53,10 @@ class TopologyWriter:
     def _face(self, face: TopoDS_Face, surface: int) -> int:
         reversed_face = face.Orientation() == TopAbs_REVERSED
         bounds = []
-        for wire in _children(face):
+        for wire in children(face, oriented=False):
             # The bound turns about the face's normal, not the surface's: compose face and wire.
             turned = reversed_face != (wire.Orientation() == TopAbs_REVERSED)
-            loop = list(_children(wire))
+            loop = list(children(wire, oriented=False))
             oriented = []
             for child in reversed(loop) if turned else loop:
                 edge = TopoDS.Edge_s(child)
@@ -85,8 +85,8 @@ class TopologyWriter:
             "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()"
             "REPRESENTATION_CONTEXT('2D SPACE',''))"
         )
-        for wire in _children(face):
-            for edge in _children(wire):
+        for wire in children(face, oriented=False):
+            for edge in children(wire, oriented=False):
                 self._curved.setdefault(self._map.Add(edge), []).append((face, number))
         return number
 
@@ -167,11 +167,3 @@ def _axial_share(face: TopoDS_Face) -> float:
 
 def _flag(value: bool) -> str:
     return ".T." if value else ".F."
-
-
-def _children(shape: TopoDS_Shape) -> Iterator[TopoDS_Shape]:
-    """Direct sub-shapes in their order, orientations as stored, locations composed."""
-    iterator = TopoDS_Iterator(shape, False, True)
-    while iterator.More():
-        yield iterator.Value()
-        iterator.Next()

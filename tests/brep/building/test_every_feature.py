@@ -11,7 +11,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.building.sheet import build_panel, build_skin, volume_of
-from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.proof.inspection import inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.kink import edge_angles, surface_normals

@@ -11,7 +11,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.building.sheet import build_panel, build_skin, build_solid, volume_of
-from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.proof.inspection import inspect
 from cadpanel.errors import PanelError
 from cadpanel.geometry.kink import edge_angles, surface_normals
 from cadpanel.geometry.patches import ConePatch

@@ -8,7 +8,7 @@ from OCP.gp import gp_Pnt, gp_Vec
 
 from cadpanel.brep.building.surfaces import arc_on_round, generatrix_on_round, plane_surface, round_surface
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
 
 ROUNDING = 1e-9  # mm, on lengths of metres

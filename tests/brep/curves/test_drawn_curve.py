@@ -10,6 +10,8 @@ from OCP.TopAbs import TopAbs_FACE
 from cadpanel.brep.curves import pcurve_fit
 from cadpanel.brep.curves.drawn_curve import sampled
 from cadpanel.brep.cutting.raw_panels import raw_panels
+from cadpanel.brep.cutting.ways import load_drawn
+from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label, ModelCurve
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.kernel.tolerances import CLOSE
@@ -154,8 +156,10 @@ def test_curve_that_cannot_be_followed_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(pcurve_fit, "ROUNDS", 0)
     skin = write_shape(tmp_path / "skin.brep", plate())
     lines = write_shape(tmp_path / "lines.brep", wave(1))
+    how = ReferenceSettings(unit="mm", network=lines)
+    model = load_model(skin, 1.0)
     with pytest.raises(ReferenceFileError, match=r"Curve 1 of 'lines.brep' cannot be followed .* on face 1: draw it"):
-        raw_panels(skin, ReferenceSettings(unit="mm", network=lines))
+        raw_panels(model, how, load_drawn(model, how, skin))
 
 
 def test_curve_over_a_valley_that_it_jumps_stays_in_one_piece(tmp_path):

@@ -1,8 +1,6 @@
-import os
 import re
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +15,6 @@ from cadpanel.brep.files.catalogue import FORMATS, format_of
 from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label, Model, Part
-from cadpanel.brep.isolation import client
 from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of, unpacked
 from cadpanel.errors import ReferenceFileError
 from tests.model_files import strip_faces, write_labelled, write_shape
@@ -218,47 +215,6 @@ def test_shapes_come_back_from_the_other_interpreter_to_the_last_digit(faces):
     for face, back in zip(faces, shapes_of(unpacked(packed(compound_of(faces))), TopAbs_FACE), strict=True):
         (there,), (here,) = sample_faces(back), sample_faces(face)
         np.testing.assert_array_equal(there.points, here.points)
-
-
-def test_crash_of_the_reader_is_one_sentence_and_the_next_file_is_read(tmp_path, faces, monkeypatch):
-    path = write_shape(tmp_path / "model.brep", faces[0])
-    load_model(path)
-    process = client._READER.start()
-    process.kill()
-    process.wait()
-    monkeypatch.setattr(client._READER, "start", lambda: process)
-    with pytest.raises(ReferenceFileError, match=r"'model.brep' makes the CAD kernel crash: it is damaged; repair"):
-        load_model(path)
-    monkeypatch.undo()
-    assert load_model(path).faces()
-
-
-def test_reader_that_does_not_end_is_stopped(tmp_path, faces, monkeypatch):
-    path = write_shape(tmp_path / "model.brep", faces[0])
-    monkeypatch.setattr(client, "SECONDS_TO_READ", 0.2)
-    monkeypatch.setattr(client, "_framed", lambda _: b"")
-    with pytest.raises(ReferenceFileError, match=r"keeps the CAD kernel busy for more than 0 s: it is damaged or"):
-        load_model(path)
-    monkeypatch.undo()
-    assert load_model(path).faces()
-
-
-def test_reader_runs_nothing_that_lies_in_the_current_folder(tmp_path, faces, monkeypatch):
-    path = write_shape(tmp_path / "model.brep", faces[0])
-    for name in ("random", "copy", "numbers", "token", "numpy", "cadpanel"):
-        (tmp_path / f"{name}.py").write_text(f"open('{name} was run', 'w')\nraise SystemExit\n")
-    monkeypatch.chdir(tmp_path)
-    client.stop_reader()
-    assert load_model(path).faces()
-    assert not list(tmp_path.glob("* was run"))
-
-
-def test_reader_that_nobody_waits_for_ends_itself(tmp_path, faces):
-    """Its time on the processor is limited by the system, which also counts when the first interpreter is gone."""
-    load_model(write_shape(tmp_path / "model.brep", faces[0]))
-    limits = Path(f"/proc/{client._READER.start().pid}/limits").read_text()
-    (line,) = [line for line in limits.splitlines() if line.startswith("Max cpu time")]
-    assert 0 < int(line.split()[3]) <= (os.cpu_count() or 1) * 2.0 * client.SECONDS_TO_READ + 60
 
 
 def test_rhino_file_without_rhino3dm_says_how_to_install_it(monkeypatch):

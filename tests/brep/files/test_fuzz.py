@@ -14,11 +14,13 @@ from cadpanel.brep.cutting.by_mesh import load_mesh
 from cadpanel.brep.files.catalogue import FORMATS
 from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label
-from cadpanel.brep.isolation import client
+from cadpanel.brep.isolation import requests
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
-from cadpanel.errors import CadpanelError
+from cadpanel.brep.survey import survey
+from cadpanel.errors import CadpanelError, DeliveryError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.brep.proof.test_certificate import Delivery, strip
 from tests.drawn import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
@@ -88,7 +90,8 @@ def damaged(data, seed):
     "name", ["products.step", "labelled.step", "faces.iges", "text.brep", "binary.bin.brep", "sphere.3dm"]
 )
 def test_damaged_file_gives_panels_or_one_sentence(originals, tmp_path, monkeypatch, name, capfd):
-    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_WORK", SECONDS)
     path = tmp_path / name
     read, sentences = 0, []
     for seed in range(VARIANTS):
@@ -97,7 +100,7 @@ def test_damaged_file_gives_panels_or_one_sentence(originals, tmp_path, monkeypa
             if name == "products.step":
                 read_raw_panels(path)
             else:
-                load_model(path)
+                survey(path)
             read += 1
         except CadpanelError as error:
             sentences.append(str(error))
@@ -131,8 +134,8 @@ def lines(folder):
 )
 def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatch, seeds, ways):
     """What was read may still be nothing that can be cut: bent, empty or far away."""
-    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
-    monkeypatch.setattr(client, "SECONDS_TO_WORK", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(requests, "SECONDS_TO_WORK", SECONDS)
     path = tmp_path / "text.brep"
     settings = {"divide": 3, "grid": (2, 2), "network": lines}
     sentences = []
@@ -146,6 +149,25 @@ def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatc
                 sentences.append(str(error))
     assert sentences
     assert [said for said in sentences if "text.brep" not in said and "lines.brep" not in said] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", ["panels_step", "skins_step"])
+def test_damaged_delivery_is_refused_or_does_not_hold(tmp_path, file):
+    """Over what seed 125 leaves of the panels, the kernel crashes."""
+    delivery = Delivery(tmp_path, strip())
+    path = getattr(delivery, file)
+    whole, ends = path.read_bytes(), []
+    for seed in range(100, 130):
+        path.write_bytes(damaged(whole, seed))
+        try:
+            ends.append(str(delivery.certify().holds))
+        except DeliveryError as error:
+            ends.append(str(error))
+    assert len({*ends} - {"True"}) > 1
+    assert [said for said in ends if said not in ("True", "False") and path.name not in said] == []
+    path.write_bytes(whole)
+    assert delivery.certify().holds
 
 
 def test_damaged_mesh_is_read_or_refused(tmp_path):

@@ -35,8 +35,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 from scipy.interpolate import make_interp_spline
 
-from cadpanel.brep.building.sheet import build_skin
-from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.kernel.splines import spline_curve

@@ -1,6 +1,6 @@
 """A skin is cut and sampled alike wherever its file puts it, and however the file says so."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,15 +21,14 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cadpanel.brep.building.sheet import volume_of
 from cadpanel.brep.faces.sampling import sample_faces
-from cadpanel.brep.files.loading import load_model
-from cadpanel.brep.files.packing import PackedProducts
-from cadpanel.brep.files.step_products import read_products
+from cadpanel.brep.files.loading import load_model, load_reference
+from cadpanel.brep.files.model import Products
+from cadpanel.brep.files.step import read_products
 from cadpanel.brep.kernel.placement import is_located, placed
 from cadpanel.brep.kernel.shape_maps import ShapeSet
-from cadpanel.brep.kernel.shapes import children, compound_of, shapes_of
+from cadpanel.brep.kernel.shapes import children, compound_of, packed, shapes_of
 from cadpanel.brep.kernel.tolerances import CLOSE
 from cadpanel.brep.read import read_raw_panels, read_reference
-from cadpanel.brep.server import read
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.brep.survey import survey
 from cadpanel.reference.settings import ReferenceSettings
@@ -164,9 +163,10 @@ def test_no_shape_that_is_read_carries_a_location(files, plain, suffix, name):
     found, wanted = panels(own, suffix, "ready-made"), plain(suffix, "ready-made")
     assert_same(found, wanted, PLACES[name], side=side_of(suffix, name))
     if suffix == ".step":
-        products = cast(PackedProducts, read("products", own["skin"], None)).unpack()
+        products = load_reference(own["skin"], ReferenceSettings())
+        assert isinstance(products, Products)
         assert not is_located(compound_of(product.shape for product in products.shapes))
-        assert is_located(compound_of(product.shape for product in read_products(own["skin"]).shapes))
+        assert is_located(compound_of(product.shape for product in read_products(own["skin"], None).shapes))
 
 
 @pytest.mark.parametrize(("suffix", "name"), [TRIED[1], TRIED[2]])
@@ -187,7 +187,8 @@ def test_skin_is_inspected_and_its_seams_are_parted_alike_wherever_it_is_put(fil
 
 def test_file_that_is_read_twice_gives_the_same_bytes(files):
     path = files(".brep", "mirrored in an assembly")["skin and curves"]
-    assert read("model", path, 1.0).shapes == read("model", path, 1.0).shapes
+    once, again = (packed(compound_of(part.shape for part in load_model(path, 1.0).parts)) for _ in range(2))
+    assert once == again
 
 
 def sewn():

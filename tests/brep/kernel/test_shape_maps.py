@@ -12,6 +12,8 @@ from OCP.TopoDS import TopoDS_Shape
 
 import cadpanel.brep
 from cadpanel.brep.cutting.raw_panels import raw_panels
+from cadpanel.brep.cutting.ways import load_drawn
+from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.step import STEP
 from cadpanel.brep.kernel.shape_maps import ShapeMap, ShapeSet
@@ -75,12 +77,17 @@ def test_map_is_a_dictionary_of_shapes():
         found[box()]
 
 
+def cut_along_itself(path, how):
+    model = load_model(path, how.millimetres)
+    return raw_panels(model, how, load_drawn(model, how, path))
+
+
 def test_strip_is_cut_alike_when_its_edges_share_a_hash(tmp_path, request):
     path = write_shape(tmp_path / "both.brep", compound_of([*faces(), *curves()]))
     how = ReferenceSettings(unit="mm", network=path)
-    wanted = raw_panels(path, how).panels
+    wanted = cut_along_itself(path, how).panels
     request.getfixturevalue("one_hash")
-    found = raw_panels(path, how).panels
+    found = cut_along_itself(path, how).panels
     assert [panel.name for panel in found] == [panel.name for panel in wanted]
     assert [len(panel.faces) for panel in found] == [len(panel.faces) for panel in wanted]
     assert len(found) == 4

@@ -1,7 +1,9 @@
 """The certificate holds for what was delivered and fails for anything that was changed afterwards."""
 
-import subprocess
+import sys
+import threading
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +18,10 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from cadpanel.brep.building.sheet import build_skin, build_solid
+from cadpanel.brep.isolation import client
 from cadpanel.brep.proof import parallel
 from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.proof.inspection import Inspector, inspect_packed
 from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.patches import ConePatch
@@ -44,6 +48,24 @@ def strip() -> list[PanelShape]:
     return [replace(moved(folded_panel(), (i * (1000.0 + GAP), 0.0, 0.0)), name=f"P{i}") for i in range(3)]
 
 
+# A second interpreter whose kernel crashes over a file of one name.
+DIES = """
+import os
+from cadpanel.brep import server
+from cadpanel.brep.proof import inspection
+
+read = inspection.open_step
+
+
+def crash(path):
+    if path.name == {name!r}:
+        os.abort()
+    return read(path)
+
+
+inspection.open_step = crash
+server.main()
+"""
 SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), edges=("end 1", "end 0"), gap=GAP) for i in range(2)]
 
 
@@ -219,21 +241,79 @@ def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch
         assert delivery.certify(helper=helper) == alone
 
 
-@pytest.mark.parametrize("dies", ["at once", "over the skins", "over the panels"])
-def test_a_second_interpreter_that_dies_costs_nothing_but_time(delivery, monkeypatch, dies):
-    alone = delivery.certify()
-    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
+@pytest.mark.parametrize("together", [False, True])
+@pytest.mark.parametrize("file", ["panels_step", "skins_step"])
+def test_an_interpreter_that_dies_over_a_file_is_one_sentence(delivery, monkeypatch, file, together):
+    name = getattr(delivery, file).name
+    client.stop_reader()
+    monkeypatch.setattr(client, "interpreter", lambda _: [sys.executable, "-c", DIES.format(name=name)])
     monkeypatch.setattr("os.cpu_count", lambda: 2)
-    script = {
-        "at once": "",
-        "over the skins": "import sys; sys.stdout.buffer.write(bytes(3))",
-        "over the panels": "import pickle, sys; pickle.dump([], sys.stdout.buffer); sys.stdin.buffer.read(1)",
-    }[dies]
-    start = subprocess.Popen
-    monkeypatch.setattr("subprocess.Popen", lambda command, **how: start([command[0], "-c", script], **how))
-    found = delivery.certify()
-    assert (found.solids, found.valid, found.volume_error) == (alone.solids, alone.valid, alone.volume_error)
-    assert found == alone or dies == "over the panels"
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0 if together else 1 << 40)
+    with pytest.raises(DeliveryError, match=rf"'{name}' makes the CAD kernel crash: it is damaged; write the delivery"):
+        delivery.certify()
+    client.stop_reader()
+    monkeypatch.undo()
+    assert delivery.certify().holds
+
+
+class Told:
+    """A file whose shapes are numbers, and their facts, too; notes who was asked for what."""
+
+    def __init__(self, count, helped=None):
+        self.count, self.helped, self.asked = count, helped, []
+
+    def open(self):
+        return self.count
+
+    def facts(self, places):
+        self.asked += places
+        return [place * place for place in places]
+
+    def ask(self, work, argument=None):
+        if work == "inspect":
+            return self.facts(argument)
+        if work == "close":
+            self.helped.set()  # only now may the helper begin
+        return argument
+
+
+@pytest.mark.parametrize("count", [0, 1, 15, 16, 17, 100])
+def test_the_shapes_of_a_file_are_each_inspected_once_by_one_of_two(count):
+    work: Any = parallel._Work()
+    own, other = Told(count, threading.Event()), Told(count)
+    work._helped.set()
+    work.do(own)
+    work.end()
+    assert own.helped.is_set()
+    work.help(other)
+    assert work.facts() == [place * place for place in range(count)]
+    assert sorted(own.asked + other.asked) == list(range(count))
+    assert len(other.asked) == min(count, parallel.AHEAD * parallel.CHUNK)
+
+
+def test_a_file_is_inspected_alone_where_the_helper_never_has_time():
+    work: Any = parallel._Work()
+    own = Told(100, threading.Event())
+    work.do(own)
+    assert own.asked == list(range(100))
+
+
+def test_a_file_that_was_written_again_is_read_again(delivery):
+    inspector = Inspector()
+    assert inspector.open(delivery.panels_step) == 3
+    del delivery.solids["P1"]
+    delivery.write()
+    assert inspector.open(delivery.panels_step) == 2
+    assert [facts.name for facts in inspector.facts(delivery.panels_step, [0, 1])] == ["P0", "P2"]
+
+
+def test_shapes_that_were_packed_have_the_same_facts(delivery):
+    inspector = Inspector()
+    inspector.open(delivery.panels_step)
+    (there,) = inspect_packed(inspector.pack(delivery.panels_step, [1]))
+    (here,) = inspector.facts(delivery.panels_step, [1])
+    assert (there.name, there.volume, there.face_kinds) == (here.name, here.volume, here.face_kinds)
+    np.testing.assert_array_equal(there.vertices, here.vertices)
 
 
 @pytest.mark.parametrize("file", ["panels_step", "skins_step"])

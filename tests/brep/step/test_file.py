@@ -15,7 +15,7 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cadpanel.brep.building.sheet import build_skin, build_solid, volume_of
-from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.proof.inspection import inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.brep.step.text import real, string
 from cadpanel.errors import DeliveryError

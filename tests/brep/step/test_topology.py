@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
 
-from cadpanel.brep.building.chain_skin import build_skin
-from cadpanel.brep.building.sheet import build_solid
+from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.brep.step.text import StepText
 from cadpanel.brep.step.topology import TopologyWriter, UnsupportedGeometry
 from tests.known_faces import flat

@@ -4,7 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.polygon import Polygon
 from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.frames import Given
 from cadpanel.fitting.start.polygons import start_polygons
 from tests.instances import random_polygon
 from tests.known_panels import alone
@@ -17,7 +19,15 @@ LENGTH = 1000.0
 def test_the_corners_of_a_flat_panel_are_found_exactly(seed):
     reference = alone(random_polygon(seed, 5))
     (panel,) = reference.panels
-    frames = start_polygons([panel], SampleArrays.of(reference), LENGTH)
+    told = Given(
+        panels=[panel],
+        source=reference.source,
+        samples=SampleArrays.of(reference),
+        length=LENGTH,
+        stretches=np.full((1, 2, 2), np.nan),
+        ways=1,
+    )
+    frames = start_polygons(Polygon(5), told)
     origin, axes, (numbers,) = frames.origins[0], frames.axes[0], frames.values
     np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-12)
     assert np.linalg.det(axes) > 0.0

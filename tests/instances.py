@@ -85,7 +85,7 @@ def _random_values(of: Feature, random: np.random.Generator, count: int, half_an
                 dimensions[:, 1] = half_angle
         values[:, of.patch_slice(i)] = of.patches[i].numbers_for(dimensions)
     for end in (0, 1):
-        at = of.cut_slice(end).start
+        at = of.cut_numbers[end, 0]
         values[:, at] = (end - 0.5) * random.uniform(0.9, 1.1, count)
         values[:, at + 1] = random.uniform(-0.1, 0.1, count)
         values[:, at + 2] = random.uniform(-0.2, 0.2, count)

@@ -139,11 +139,6 @@ class Feature:
         start = len(_ANCHOR) + sum(len(other.numbers()) for other in self.patches[:patch])
         return slice(start, start + len(self.patches[patch].numbers()))
 
-    def cut_slice(self, end: int) -> slice:
-        """Where position, skew and tilt of one cut plane stand among `numbers`."""
-        start = len(self.numbers) - 6 + 3 * end
-        return slice(start, start + 3)
-
     def expand(self, unknowns: Array) -> Array:
         """(n, numbers) all numbers from the (n, free) unknowns; fixed and tied ones take their values."""
         values = np.empty((len(unknowns), len(self.numbers)))

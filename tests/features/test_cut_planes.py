@@ -53,7 +53,7 @@ def test_square_cuts_stand_square_on_the_anchor_ruling(name, seed):
 def test_a_square_cut_is_as_far_from_the_anchor_as_its_position_says():
     walked, m, s = walked_cuts("plane-cone-plane", "square", 4)
     for end in (0, 1):
-        position = walked.values[:, walked.feature.cut_slice(end).start]
+        position = walked.values[:, walked.feature.cut_numbers[end, 0]]
         assert s[:, end] - dot(m[:, end], walked.anchor.p[:, 0]) == pytest.approx(position, abs=ROUNDING)
 
 

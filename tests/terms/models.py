@@ -298,7 +298,7 @@ def _turned_end_for_end(of: Feature, unknowns: Array) -> Array:
         far = of.patches[last - i].dimensions(old[None, of.patch_slice(last - i)])
         values[of.patch_slice(i)] = of.patches[i].numbers_for(far.values * signs)[0]
     for end in (0, 1):
-        values[of.cut_slice(end)] = old[of.cut_slice(1 - end)] * [-1.0, 1.0, -1.0]
+        values[of.cut_numbers[end]] = old[of.cut_numbers[1 - end]] * [-1.0, 1.0, -1.0]
     turned: Array = values[of.free]
     return turned
 

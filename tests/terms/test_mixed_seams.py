@@ -205,7 +205,7 @@ def one_cone_told_twice(stretch=1.0):
     values = np.zeros((1, len(split.numbers)))
     values[0, split.patch_slice(0)] = radius, half_angle, sweeps[0]
     values[0, split.patch_slice(1)] = radius, half_angle, sweeps[1]
-    values[0, split.cut_slice(0)], values[0, split.cut_slice(1)] = (-0.5, 0.02, -0.1), (0.5, -0.05, 0.15)
+    values[0, split.cut_numbers[0]], values[0, split.cut_numbers[1]] = (-0.5, 0.02, -0.1), (0.5, -0.05, 0.15)
     walked = split.walk(values, derivatives=False)
     # The anchor of the whole cone lies further on, by half of the second sweep.
     start = walked.anchor
@@ -217,7 +217,7 @@ def one_cone_told_twice(stretch=1.0):
     m, s = (one[0] for one in cut_planes(walked))
     for end in (0, 1):
         across, along, out = m[end] @ into
-        numbers[0, whole.cut_slice(end)] = (s[end] - m[end] @ middle.p[0]) / along, across / along, out / along
+        numbers[0, whole.cut_numbers[end]] = (s[end] - m[end] @ middle.p[0]) / along, across / along, out / along
     place, length = problem.place, problem.place.length
     place = replace(
         place,

@@ -225,13 +225,12 @@ def _lay_flanges(corners: Array, feature: Feature, values: Array, panels: Sequen
 
 def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames, length: float, values: Array) -> None:
     """Lay each cut plane through the outline's end."""
-    for end in (0, 1):
-        where = feature.cut_slice(end).start
-        tilt = feature.numbers[where + 2].fixed is None
+    for end, where in enumerate(feature.cut_numbers):
+        tilt = feature.numbers[where[2]].fixed is None
         for i, panel in enumerate(panels):
             local = (panel.ends[end] - frames.origins[i]) @ frames.axes[i] / length
             position, normal = end_plane(local, tilt=tilt)
-            values[i, where : where + 3] = position, normal[0], normal[2]
+            values[i, where] = position, normal[0], normal[2]
     if feature.tied:
         for number, source in feature.tied:
             values[:, source] = 0.5 * (values[:, source] + values[:, number])
@@ -239,9 +238,10 @@ def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames
         corners = np.array([panel.corners for panel in panels]).mean(axis=2)
         local = np.einsum("pex,pxa->pea", corners - frames.origins[:, None], frames.axes) / length
         for end in (0, 1):
-            where = feature.cut_slice(end).start
-            skew, tilt_ = (values[:, feature.cut_slice(0).start + k] if feature.tied else 0.0 for k in (1, 2))
-            values[:, where] = local[:, end, 1] + skew * local[:, end, 0] + tilt_ * local[:, end, 2]
+            skew, tilt_ = (values[:, feature.cut_numbers[0, k]] if feature.tied else 0.0 for k in (1, 2))
+            values[:, feature.cut_numbers[end, 0]] = (
+                local[:, end, 1] + skew * local[:, end, 0] + tilt_ * local[:, end, 2]
+            )
 
 
 def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:

@@ -131,5 +131,5 @@ def test_distances_between_ellipses_anywhere_are_those_of_many_points_on_them(fl
     found = hausdorff_distances(*zip(*pairs, strict=True))
     for distance, pair in zip(found, pairs, strict=True):
         points = [sampled_arc(piece) for piece in pair]
-        wanted = max(cKDTree(points[k]).query(points[1 - k])[0].max() for k in range(2))
+        wanted = max(np.max(cKDTree(points[k]).query(points[1 - k])[0]) for k in range(2))
         assert distance == pytest.approx(wanted, abs=1.0)

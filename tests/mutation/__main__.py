@@ -120,14 +120,12 @@ def _try(mutant: Mutant, copy: Path, coverage: Coverage, timeout: float) -> Outc
         for function in (mutant.function, (0, 0)):
             tests = coverage.tests_of(mutant.path, function)
             if function == (0, 0):
-                files = {test.partition("::")[0] for test in tests}
-                tests |= {test for test in coverage.calls if test.partition("::")[0] in files}
+                tests |= coverage.beside(tests)
             tests -= done
             done |= tests
             if tests:
-                files = sorted({test.partition("::")[0] for test in tests}, key=lambda one: coverage.took(one, tests))
                 seconds = timeout or PATIENCE * sum(coverage.seconds[test] for test in tests) + START_UP
-                outcome = run_tests(copy, files, [Chosen(tests)], seconds)
+                outcome = run_tests(copy, coverage.files_of(tests), [Chosen(tests)], seconds)
                 if outcome != "survived":
                     return outcome
         return "survived"

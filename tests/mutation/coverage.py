@@ -84,6 +84,18 @@ class Coverage:
             if any(first <= line <= last for line in found.get(path, ()) if line > 1 or not any(function))
         }
 
-    def took(self, file: str, tests: Collection[str]) -> float:
-        """How long those of the tests take that stand in a file, seconds."""
-        return sum(self.seconds[test] for test in tests if test.partition("::")[0] == file)
+    def beside(self, tests: Collection[str]) -> set[str]:
+        """All tests that stand in the same files: one of them may hold what a fixture made for another."""
+        files = set(map(_file_of, tests))
+        return {test for test in self.calls if _file_of(test) in files}
+
+    def files_of(self, tests: Collection[str]) -> list[str]:
+        """The files in which tests stand, those first whose tests take least."""
+        took: dict[str, float] = {}
+        for test in tests:
+            took[_file_of(test)] = took.get(_file_of(test), 0.0) + self.seconds[test]
+        return sorted(took, key=lambda file: (took[file], file))
+
+
+def _file_of(test: str) -> str:
+    return test.partition("::")[0]

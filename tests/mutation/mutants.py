@@ -108,6 +108,11 @@ def _changes(tree: ast.Module, text: str) -> Iterator[Change]:
             yield from source.raised(node.args)
 
 
+def _raised(number: float) -> float:
+    """A whole number raised by one, any other by a quarter."""
+    return number + 1 if isinstance(number, int) else RAISED * number or RAISED - 1.0
+
+
 def _name(function: ast.expr) -> str:
     return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
 
@@ -150,7 +155,6 @@ class _Source:
     def raised(self, sides: Sequence[ast.expr]) -> Iterator[Change]:
         """Those of some numbers that are written out, raised."""
         for node in sides:
-            if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+            if isinstance(node, ast.Constant) and isinstance(node.value, int | float) and type(node.value) is not bool:
                 text = self._lines[node.lineno - 1][node.col_offset : node.end_col_offset].decode()
-                raised = node.value + 1 if isinstance(node.value, int) else RAISED * node.value or RAISED - 1.0
-                yield node.lineno, node.col_offset, text, repr(raised)
+                yield node.lineno, node.col_offset, text, repr(_raised(node.value))

@@ -186,3 +186,13 @@ def test_the_balance_ends_once_the_cost_is_at_rest():
     targets = np.array([[1.0, 0.0], [3.0, 0.0]])
     model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
     assert solve(model, targets.copy(), Schedule(balance=60, close=5)).rounds < 30
+
+
+def test_of_all_that_holds_the_last_one_below_the_most_cost_is_kept():
+    """The later, the more settled; what costs too much is no answer, however well it holds."""
+    targets = np.array([[1.0, 0.0], [3.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
+    costs = iter([1.0, 2.0, 3.0, 100.0])
+    how = Schedule(balance=20, close=5, steady=0.0)
+    found = hold_tolerances(model, [model], lambda _: next(costs), targets.copy(), how, most_cost=50.0)
+    assert found.rounds == 3

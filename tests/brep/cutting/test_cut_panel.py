@@ -20,7 +20,7 @@ def test_names_along_a_strip_sort_in_its_order_and_all_differ(count):
     ("place", "name"), [((0, 0), "roof-R01-C001"), ((8, 9), "roof-R09-C010"), ((11, 99), "roof-R12-C100")]
 )
 def test_names_of_a_grid_have_as_many_digits_as_their_rows_and_columns(place, name):
-    assert grid_name("roof", *place, (12, 100)) == name
+    assert grid_name("roof", place[0], place[1], (12, 100)) == name
 
 
 def test_panels_take_their_groups_of_faces_in_order():

@@ -97,11 +97,15 @@ def test_parts_by_length_are_reached_where_the_long_edges_have_come_that_far():
 
 
 def test_a_strip_runs_the_way_in_which_its_normals_turn_slowly_however_short_it_is():
-    (lane,) = find_lanes(surface_of(arc_face(300.0, 0.0, 120.0, length=100.0))).lanes
-    assert lane.axis == 1  # along the cylinder, though the arc is six times as long
-    flat = find_lanes(surface_of(plate(0, length=600.0)))
-    assert flat.lanes[0].axis == 0
-    assert find_lanes(surface_of(plate(0, length=400.0))).lanes[0].axis == 1
+    assert axis_of(arc_face(300.0, 0.0, 120.0, length=100.0)) == 1  # along it, though the arc is six times as long
+    assert axis_of(plate(0, length=600.0)) == 0
+    assert axis_of(plate(0, length=400.0)) == 1
+
+
+def axis_of(face):
+    lanes = find_lanes(surface_of(face))
+    assert lanes is not None
+    return lanes.lanes[0].axis
 
 
 @pytest.mark.parametrize(("off", "common"), [(0.5 * COMMON, True), (2.0 * COMMON, False)])

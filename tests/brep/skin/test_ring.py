@@ -38,10 +38,16 @@ def test_a_ring_is_as_long_as_its_circle_and_its_panels_are_equally_long(stops, 
 @pytest.mark.parametrize("reverse", [False, True])
 def test_the_order_of_the_faces_and_the_side_of_their_normals_change_no_panel(order, reverse):
     faces = tube(20.0, 130.0, 250.0, 380.0)
-    wanted = [middle(group) for group in find_ring(surface_of(*faces)).cut(4, 1.0)]
+    wanted = [middle(group) for group in ring_of(*faces).cut(4, 1.0)]
     turned = [TopoDS.Face_s(faces[k].Reversed()) if reverse else faces[k] for k in order]
-    found = [middle(group) for group in find_ring(surface_of(*turned)).cut(4, 1.0)]
+    found = [middle(group) for group in ring_of(*turned).cut(4, 1.0)]
     np.testing.assert_allclose(found, wanted, atol=1e-6)
+
+
+def ring_of(*faces):
+    ring = find_ring(surface_of(*faces))
+    assert ring is not None
+    return ring
 
 
 def middle(faces):
@@ -51,7 +57,7 @@ def middle(faces):
 
 def test_a_ring_runs_counterclockwise_about_the_axis_that_it_turns_about():
     """Seen from where x, about which it turns, points to."""
-    ring = find_ring(surface_of(*tube(0.0, 120.0, 240.0, 360.0)))
+    ring = ring_of(*tube(0.0, 120.0, 240.0, 360.0))
     angles = np.concatenate(
         [np.arctan2(*column.middles(np.linspace(0.0, 1.0, 20)).T[[2, 1]]) for column in ring.columns]
     )
@@ -60,7 +66,7 @@ def test_a_ring_runs_counterclockwise_about_the_axis_that_it_turns_about():
 
 def test_a_cut_beside_a_joint_is_made_there_within_the_tolerance():
     """Half-way round is 1 degree, 14 mm, from where the two faces meet."""
-    ring = find_ring(surface_of(*tube(0.0, 181.0, 360.0)))
+    ring = ring_of(*tube(0.0, 181.0, 360.0))
     assert sorted(len(group) for group in ring.cut(2, 20.0)) == [1, 1]
     assert sorted(len(group) for group in ring.cut(2, 10.0)) == [1, 2]
 

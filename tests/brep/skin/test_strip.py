@@ -56,11 +56,12 @@ def test_planes_pass_through_both_edges_square_to_the_way_along_them(seed):
     """Edges that wander: their chords have any direction."""
     random = np.random.default_rng(seed)
     x = np.linspace(0.0, 4000.0, 60)
-    edges = tuple(
-        np.stack([x, side + 200.0 * np.sin(x / 900.0 + random.uniform(0, 6)), 100.0 * np.cos(x / 700.0)], axis=1)
-        for side in (0.0, 800.0)
-    )
-    strip = Strip(edges=edges, girth=1000.0)
+
+    def edge(side):
+        sway = 200.0 * np.sin(x / 900.0 + random.uniform(0.0, 6.0))
+        return np.stack([x, side + sway, 100.0 * np.cos(x / 700.0)], axis=1)
+
+    strip = Strip(edges=(edge(0.0), edge(800.0)), girth=1000.0)
     cuts = strip.planes(PARTS)
     for points in strip.points(PARTS):
         np.testing.assert_allclose(np.sum((points - cuts.origins) * cuts.normals, axis=1), 0.0, atol=1e-9)

@@ -17,8 +17,8 @@ from tests.shapes import folded_panel
 def written(shape):
     text = StepText()
     number = TopologyWriter(text).item(shape)
-    kinds = [re.match(r"\(?(\w+)", line)[1] for line in text.lines]
-    return text, number, Counter(kinds)
+    kinds = Counter(word for line in text.lines for word in re.findall(r"^\(?(\w+)", line))
+    return text, number, kinds
 
 
 def used(text, kind, place):

@@ -18,6 +18,7 @@ from cadpanel.brep.curves.polyline_smoothing import FACET
 from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Model, ModelCurve
 from cadpanel.brep.kernel.transforms import shifted
+from cadpanel.brep.skin.strip_direction import runs_back
 from cadpanel.errors import ReferenceFileError
 
 # How closely one curve must begin where another one ends to follow it, as a part of the whole length.
@@ -150,8 +151,7 @@ def chain(polylines: Sequence[Array]) -> Array | None:
                 break
         else:
             return None
-    way = line[-1] - line[0]
-    return line[::-1] if way[np.abs(way).argmax()] < 0.0 else line
+    return line[::-1] if runs_back(line[-1] - line[0]) else line
 
 
 def _joined(line: Array, other: Array, near: float) -> Array | None:

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from cadpanel.brep.faces.face_patch import equal_parts, lengths_along
 from cadpanel.brep.skin.adjacency import Surface, levels
 from cadpanel.brep.skin.iso_strip import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
+from cadpanel.brep.skin.strip_direction import runs_back
 from cadpanel.geometry.vectors import cross
 
 # Places within this of each other along an axis of space, in mm, count as equally far along it.
@@ -176,7 +177,7 @@ def _begun(columns: Sequence[Lanes]) -> tuple[Lanes, ...]:
     """The same ring begun where it comes first in space, and walked counterclockwise."""
     line = np.concatenate([column.middles(np.linspace(0.0, 1.0, 33)[:-1]) for column in columns])
     about = cross(line - line.mean(axis=0), np.roll(line, -1, axis=0) - line.mean(axis=0)).sum(axis=0)
-    if about[np.abs(about).argmax()] < 0.0:
+    if runs_back(about):
         columns = [column.turned() for column in reversed(columns)]
     joints = np.concatenate([column.middles(ENDS[:1]) for column in columns])
     first = int(np.lexsort([levels(joints[:, axis], LEVEL) for axis in (2, 1, 0)])[0])

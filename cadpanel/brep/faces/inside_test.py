@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
-from OCP.TopAbs import TopAbs_OUT
+from OCP.TopAbs import TopAbs_IN, TopAbs_OUT, TopAbs_State
+from OCP.TopoDS import TopoDS_Face
 
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.brep.faces.face_patch import Patch
@@ -12,24 +15,44 @@ from cadpanel.brep.kernel import points as kernel
 from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.geometry.vectors import norm, side_of
 
-# Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range.
+# Tolerance of the test whether a point lies inside the border of a face, as a part of the parameter range's
+# shorter side.
 INSIDE = 1e-9
 # Segments whose crossings with a border are looked for at once: few enough to take little memory.
 AT_ONCE = 64
+
+
+class InsideTest:
+    """The kernel's test of points of a face's parameter plane, set up once to be used again and again."""
+
+    def __init__(self, face: TopoDS_Face, bounds: Array) -> None:
+        """Set it up for a face with its least and largest parameters (2, 2), by u and v."""
+        self._test = BRepTopAdaptor_FClass2d(face, INSIDE * float(np.ptp(bounds, axis=1).min()))
+
+    def inside(self, parameters: Array) -> BoolArray:
+        """Which of (m, 2) parameters lie on the face, and not on its border."""
+        return self._states(parameters, lambda state: state == TopAbs_IN)
+
+    def encloses(self, parameters: Array) -> BoolArray:
+        """Which of (m, 2) parameters lie on the face or on its border."""
+        return self._states(parameters, lambda state: state != TopAbs_OUT)
+
+    def _states(self, parameters: Array, fits: Callable[[TopAbs_State], bool]) -> BoolArray:
+        found = [fits(self._test.Perform(kernel.point_2d(*place))) for place in parameters.tolist()]
+        return np.array(found, dtype=np.bool_)
 
 
 class Trim:
     """The border of a face that does not fill its parameter range."""
 
     def __init__(self, patch: Patch) -> None:
-        """Set up the kernel's test, which is used again and again."""
+        """Set up the test for the face of a patch."""
         self._patch = patch
-        self._test = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds, axis=1).min()))
+        self._test = InsideTest(patch.face, patch.bounds)
 
     def encloses(self, parameters: Array) -> BoolArray:
         """Which of (m, 2) parameters lie on the face or on its border."""
-        tested = [self._test.Perform(kernel.point_2d(*place)) != TopAbs_OUT for place in parameters.tolist()]
-        return np.array(tested, dtype=np.bool_)
+        return self._test.encloses(parameters)
 
     def leaves_out(self, parameters: Array, clearance: float) -> bool:
         """Whether a line of (m, 2) parameters outside the face goes farther than a clearance away, and never inside.

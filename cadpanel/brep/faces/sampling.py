@@ -11,9 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
-from OCP.gp import gp_Pnt2d
-from OCP.TopAbs import TopAbs_IN, TopAbs_REVERSED
+from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array, BoolArray, IntArray
@@ -29,6 +27,7 @@ from cadpanel.brep.faces.arc_length_grid import (
 )
 from cadpanel.brep.faces.area import trimmed_areas, whole_areas
 from cadpanel.brep.faces.boundary import Edge, sample_edges, unit_normals
+from cadpanel.brep.faces.inside_test import InsideTest
 from cadpanel.brep.faces.surface_batch import SurfaceBatch
 from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.kernel.splines import breaks_of, spans_of
@@ -50,8 +49,6 @@ BORDER = 1e-6
 # Samples of an untrimmed face add up to its area where what they stand for differs by no more than this part between
 # them, and it has no more spans than lines it was measured on; else it is integrated.
 EVEN = 1e-4
-# Tolerance of the inside test, as a part of the parameter range.
-INSIDE = 1e-9
 # A trimmed face's grid has this many times the wanted samples at most, where only a small part of it lies inside.
 LARGEST_GRID = 40
 
@@ -214,7 +211,7 @@ def _sample(measured: _MeasuredFaces, wanted: Array) -> list[FaceSamples]:
     for face, (stop, size) in enumerate(zip(np.cumsum(sizes).tolist(), sizes.tolist(), strict=True)):
         own = slice(stop - size, stop)
         if measured.trimmed[face]:
-            keep[own] &= _inside(measured, face, parameters[own])
+            keep[own] &= InsideTest(measured.faces[face], measured.bounds[face]).inside(parameters[own])
             covered = weights[own][keep[own]].sum()
             weights[own] *= measured.areas[face] / covered if covered > 0.0 else 1.0
         kept = own if keep[own].all() else np.flatnonzero(keep[own]) + own.start
@@ -280,9 +277,3 @@ def _even_border(measured: _MeasuredFaces, way: int, owners: IntArray, parts: Ar
     even = reach[owners, -1] <= 0.0
     first, last = lines[owners, before], lines[owners, before + 1]
     return np.where(even, parts, first + within * (last - first))
-
-
-def _inside(measured: _MeasuredFaces, face: int, parameters: Array) -> BoolArray:
-    """Tell for each of the (m, 2) parameters whether it lies inside the trimmed face."""
-    classifier = BRepTopAdaptor_FClass2d(measured.faces[face], INSIDE * float(np.ptp(measured.bounds[face])))
-    return np.array([classifier.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in parameters.tolist()], dtype=np.bool_)

@@ -15,6 +15,7 @@ from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.skin.iso_strip import Lanes, find_lanes
 from cadpanel.brep.skin.split_by_planes import THROUGH, cut_by_planes
 from cadpanel.brep.skin.strip import find_strip
+from cadpanel.brep.skin.strip_direction import turning_angles
 from cadpanel.errors import ReferenceFileError
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.vectors import norm
@@ -172,7 +173,7 @@ def _section(points: Sequence[Array], normals: Sequence[Array]) -> CrossSection:
             # Neighbours may have their normals on different sides.
             length += float(norm(line[0] - points[index - 1][-1]))
             turn += float(np.arccos(np.clip(abs(across[0] @ normals[index - 1][-1]), 0.0, 1.0)))
-        angles = 2.0 * np.arcsin(np.clip(0.5 * norm(np.diff(across, axis=0)), 0.0, 1.0))
+        angles = turning_angles(across)
         lengths.append(length + arc_length(line))
         turns.append(turn + np.concatenate([[0.0], np.cumsum(angles)]))
         length, turn = float(lengths[-1][-1]), float(turns[-1][-1])

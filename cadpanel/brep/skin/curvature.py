@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
-from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec
-from OCP.TopAbs import TopAbs_IN
+from OCP.gp import gp_Pnt, gp_Vec
 
 from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch
+from cadpanel.brep.faces.inside_test import InsideTest
 from cadpanel.brep.skin.face_cleanup import SkinFace
 from cadpanel.geometry.vectors import cross, norm
 
@@ -23,7 +22,6 @@ DEVELOPABLE = 1e-4
 """A face is developable when its total Gaussian curvature is no more than this, steradians: so much of the unit sphere
 its normals cover, and a true cone's or cylinder's cover none. A square of 0.6 by 0.6 degrees is 1e-4."""
 GRID = 31
-INSIDE = 1e-9
 DEGENERATE = 1e-12
 
 
@@ -71,9 +69,7 @@ def _principal(patch: Patch) -> tuple[Array, Array, Array]:
     parts = (np.arange(GRID) + 0.5) / GRID
     parameters = patch.at(0, np.repeat(parts, GRID), np.tile(parts, GRID))
     if not patch.whole:
-        inside = BRepTopAdaptor_FClass2d(patch.face, INSIDE * float(np.ptp(patch.bounds)))
-        kept = [inside.Perform(gp_Pnt2d(u, v)) == TopAbs_IN for u, v in parameters.tolist()]
-        parameters = parameters[np.array(kept, dtype=np.bool_)]
+        parameters = parameters[InsideTest(patch.face, patch.bounds).inside(parameters)]
     su, sv, suu, svv, suv = _derivatives(patch, parameters)
     normals = cross(su, sv)
     sizes = norm(normals)

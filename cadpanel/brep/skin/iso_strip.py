@@ -15,15 +15,12 @@ from OCP.TopoDS import TopoDS_Face
 from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch, equal_parts, lengths_along, rectangle
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.geometry.order import EQUAL, goes_backwards
+from cadpanel.brep.skin.strip_direction import turning_angles, way_along
+from cadpanel.geometry.order import goes_backwards
 from cadpanel.geometry.vectors import norm
 
 # Parameter lines each way on which a face's curvature is looked at.
 MEASURED_LINES = 17
-# Two directions turn alike when their rates differ by less than this factor; then the longer one is along the strip.
-ALIKE = 1.5
-# Rates below this count as straight, radians a millimetre: 1 degree in 100 m.
-STRAIGHT = 2e-7
 # How closely neighbouring lanes must agree at equal parts, mm.
 COMMON = 1e-3
 ENDS = np.array([0.0, 1.0])
@@ -150,7 +147,7 @@ def find_lanes(surface: Surface) -> Lanes | None:
         return None
     rates = [_turning_rates(patch) for patch in patches]
     first = max(range(len(patches)), key=lambda index: max(rates[index][0]))
-    axis = _slow_axis(*rates[first])
+    axis = way_along(*rates[first])
     lanes: dict[int, Lane] = {first: Lane(patch=patches[first], axis=axis, forward=True)}
     neighbours = neighbours_of(surface)
     joints: set[tuple[tuple[int, float], tuple[int, float]]] = set()
@@ -189,17 +186,9 @@ def _turning_rates(patch: Patch) -> tuple[tuple[float, float], tuple[float, floa
         parameters = patch.at(axis, middles[None, :], middles[:, None])
         points, normals = patch.points(parameters), patch.normals(parameters)
         length = norm(np.diff(points, axis=1)).sum(axis=1)
-        turning = 2.0 * np.arcsin(np.clip(0.5 * norm(np.diff(normals, axis=1)), 0.0, 1.0)).sum(axis=1)
-        rates.append(float(turning.sum() / max(length.sum(), np.finfo(float).tiny)))
+        rates.append(float(turning_angles(normals).sum() / max(length.sum(), np.finfo(float).tiny)))
         lengths.append(float(length.mean()))
     return (rates[0], rates[1]), (lengths[0], lengths[1])
-
-
-def _slow_axis(rates: tuple[float, float], lengths: tuple[float, float]) -> int:
-    slow, fast = sorted(rates)
-    if fast < STRAIGHT or fast < ALIKE * slow:
-        return int((1.0 - EQUAL) * lengths[1] > lengths[0])
-    return int(rates[1] < rates[0])
 
 
 def neighbours_of(surface: Surface) -> list[list[tuple[int, Array]]]:

@@ -9,8 +9,9 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
+from cadpanel.brep.skin.strip_direction import turning_angles, way_along
 from cadpanel.errors import OutlineError, ReferenceFileError
-from cadpanel.geometry.order import EQUAL, first_way, goes_backwards
+from cadpanel.geometry.order import goes_backwards
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.model import RawPanel
@@ -20,9 +21,6 @@ CUT_OTHERWISE = "cut it with a grid, a network of curves or a mesh"
 """What to do about a surface that is no strip."""
 
 SIDES = 4
-# Two pairs of sides turn alike when their rates differ by less than this factor; then the longer pair is long.
-ALIKE = 1.5
-STRAIGHT = 2e-7
 # A chord between the long edges shorter than this part of the strip's girth gives a plane no direction.
 NO_CHORD = 0.02
 # A plane reaches beyond the middle of its chord by this part of the girth: no point of a section lies farther than 0.5.
@@ -100,28 +98,26 @@ def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
             f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}: "
             f"{CUT_OTHERWISE}."
         )
-    rates = [sum(map(_turning, pair)) / sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]
-    lengths = [sum(side.length for side in pair) for pair in (sides[0::2], sides[1::2])]
+    lengths, turned = (
+        [sum(map(measure, pair)) for pair in (sides[0::2], sides[1::2])] for measure in (_length, _turning)
+    )
     # The sides follow each other round the outline, so that opposite ones run against each other.
     pairs = [(sides[one].points, sides[one + 2].points[::-1]) for one in (0, 1)]
     ways = np.array([np.mean([edge[-1] - edge[0] for edge in pair], axis=0) for pair in pairs])
-    slow, fast = sorted(rates)
-    if fast >= STRAIGHT and fast >= ALIKE * slow:
-        first = int(rates[1] < rates[0])
-    elif min(lengths) >= (1.0 - EQUAL) * max(lengths):
-        first = first_way(ways)
-    else:
-        first = int(lengths[1] > lengths[0])
+    first = way_along((turned[0] / lengths[0], turned[1] / lengths[1]), (lengths[0], lengths[1]), ways)
     edges = pairs[first]
     if goes_backwards(ways[first]):
         edges = edges[0][::-1], edges[1][::-1]
     return Strip(edges=edges, girth=max(sides[first - 1].length, sides[1 - first].length, *_bulge(surface, edges)))
 
 
+def _length(side: Side) -> float:
+    return side.length
+
+
 def _turning(side: Side) -> float:
     """By how much the normals turn on the way along a side, radians."""
-    steps = norm(np.diff(side.normals, axis=0))
-    return float(2.0 * np.arcsin(np.clip(0.5 * steps, 0.0, 1.0)).sum())
+    return float(turning_angles(side.normals).sum())
 
 
 def _bulge(surface: Surface, edges: tuple[Array, Array]) -> tuple[float]:

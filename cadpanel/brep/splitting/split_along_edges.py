@@ -9,24 +9,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from OCP.BOPAlgo import BOPAlgo_BuilderFace
 from OCP.BOPTools import BOPTools_AlgoTools, BOPTools_AlgoTools2D
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepAlgoAPI import BRepAlgoAPI_BuilderAlgo
-from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.BRepTools import BRepTools
 from OCP.IntTools import IntTools_Context
 from OCP.Standard import Standard_Failure
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN, TopAbs_INTERNAL, TopAbs_REVERSED
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_INTERNAL, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
+from cadpanel.brep.faces.inside_test import InsideTest
 from cadpanel.brep.kernel.shape_maps import ShapeMap, ShapeSet
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import FUZZY, Pieces, listed, require_whole, split_faces, unsplit
 
-# Tolerance of the test whether a part of an edge lies inside a face's border, in the parameter plane.
-INSIDE = 1e-9
 # What the tolerance of an edge or vertex may grow to, mm, where its curves lie that far apart; the kernel's own value.
 LARGEST_TOLERANCE = 0.05
 
@@ -130,7 +130,7 @@ def _border(face: TopoDS_Face, fuse: BRepAlgoAPI_BuilderAlgo) -> tuple[list[Topo
 
 def _inner(face: TopoDS_Face, images: Sequence[tuple[TopoDS_Edge, ...]], border: ShapeSet) -> list[TopoDS_Edge]:
     """The parts of the edges that lie on a face and not along its border."""
-    test: BRepTopAdaptor_FClass2d | None = None
+    test: InsideTest | None = None
     found: ShapeMap[TopoDS_Edge] = ShapeMap()
     for parts in images:
         for part in parts:
@@ -139,10 +139,10 @@ def _inner(face: TopoDS_Face, images: Sequence[tuple[TopoDS_Edge, ...]], border:
             if not BOPTools_AlgoTools2D.HasCurveOnSurface_s(part, face):
                 continue
             # Another face may lie on the same surface, and the edge be there.
-            test = test or BRepTopAdaptor_FClass2d(face, INSIDE)
+            test = test or InsideTest(face, np.array(BRepTools.UVBounds_s(face)).reshape(2, 2))
             curve = BRepAdaptor_Curve2d(part, face)
             middle = curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter()))
-            if test.Perform(middle) == TopAbs_IN:
+            if test.inside(np.array([middle.Coord()]))[0]:
                 found[part] = part
     return list(found.values())
 

@@ -14,6 +14,7 @@ from cadpanel.fitting.measures.fit import largest_deviations
 from cadpanel.fitting.methods.local import fit_alone
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.chain_checks import check_skin
 from cadpanel.geometry.shape import AnyShape
 from cadpanel.reference.model import PanelReference, Reference
@@ -113,7 +114,7 @@ class Choice:
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
         found = fit_alone(problem, starts, self._settings)
-        self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
+        self.deviations[suited, place] = largest_deviations(panel_shapes(problem, found.unknowns), part)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
         if CHEAPEST_FIRST[place] == POLYGON:

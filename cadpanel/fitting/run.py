@@ -94,14 +94,15 @@ def _fit(
         "two_stage": lambda: staged,
         "concurrent": lambda: fit_concurrent(posed, local.unknowns, how, tell),
     }[how.method]()
-    measures = measure(posed, reference, chosen.unknowns)
+    shapes = panel_shapes(posed, chosen.unknowns)
+    measures = measure(shapes, reference)
     return FitResult(
         reference=reference,
         settings=how,
-        shapes=panel_shapes(posed, reference, chosen.unknowns),
+        shapes=shapes,
         measures=measures,
-        local=measure(posed, reference, local.unknowns),
-        two_stage=measure(posed, reference, staged.unknowns),
+        local=measure(panel_shapes(posed, local.unknowns), reference),
+        two_stage=measure(panel_shapes(posed, staged.unknowns), reference),
         tolerance_met=keeps_limits(measures, how),
         starts=chosen.starts,
         agreed=chosen.agreed,

@@ -71,7 +71,7 @@ def test_panels_that_cannot_be_built_among_their_neighbours_get_another_feature(
     """What cannot be built is told by the builder; here it refuses every cylinder."""
     built = feature_choice.can_be_built
     refused = lambda shape: shape.feature != "cylinder" and built(shape)  # noqa: E731
-    monkeypatch.setattr("cadpanel.fitting.result.can_be_built", refused)
+    monkeypatch.setattr("cadpanel.fitting.run.can_be_built", refused)
     result = fit(alone(random_shapes(feature("cylinder"), 2, 1)[0]), CLOSE)
     assert result.shapes[0].feature != "cylinder"
     assert result.measures.max_deviation.max() <= 0.01

@@ -157,8 +157,8 @@ def mixed(twist, features):
     problem, starts = pose(of, by_name)
     local = fit_local(problem, of, starts)
     found = fit_concurrent(problem, local.unknowns, FitSettings())
-    shapes = panel_shapes(problem, of, found.unknowns)
-    return of, shapes, measure(problem, of, local.unknowns), measure(problem, of, found.unknowns)
+    shapes = panel_shapes(problem, found.unknowns)
+    return of, shapes, measure(panel_shapes(problem, local.unknowns), of), measure(shapes, of)
 
 
 @pytest.mark.parametrize("plate", ["planar-quadrilateral", "planar-polygon"])
@@ -199,8 +199,9 @@ def test_a_polygon_meets_the_flange_of_a_folded_panel(open_by):
     of = gable(open_by)
     problem, starts = pose(of, [feature("plane-cone-plane"), polygon(5)])
     local = fit_local(problem, of, starts)
-    assert measure(problem, of, local.unknowns).max_seam_gap == pytest.approx(open_by, abs=1e-3)
-    after = measure(problem, of, fit_concurrent(problem, local.unknowns, FitSettings()).unknowns)
+    assert measure(panel_shapes(problem, local.unknowns), of).max_seam_gap == pytest.approx(open_by, abs=1e-3)
+    found = fit_concurrent(problem, local.unknowns, FitSettings())
+    after = measure(panel_shapes(problem, found.unknowns), of)
     assert keeps_limits(after, FitSettings())
     assert after.max_seam_gap <= min(1.0, open_by + 1e-6)
     assert after.overall_rms <= open_by + 1e-6

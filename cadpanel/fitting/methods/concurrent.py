@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.measures.fit import seam_gaps
+from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, Limit, balanced, drift_and_shop_limits, seam_terms
 from cadpanel.fitting.methods.method import Fitted, Progress
 from cadpanel.fitting.methods.weighted import weighted_objective
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 
 # How often seams are tightened, and up to which excess that is worth trying. Arcs are held by their distances from the
@@ -55,7 +56,8 @@ def _concurrent(
     iterations = found.iterations
     # Between the points that are held the curves may still part a little further: measure, tighten there, go on.
     for _ in range(_TIGHTENINGS):
-        excess = seam_gaps(problem, problem.state(found.unknowns)) / settings.gap_tolerance
+        seam_gap, _ = along_seams(panel_shapes(problem, found.unknowns), problem.met)
+        excess = seam_gap / settings.gap_tolerance
         if not 1.0 < excess.max(initial=0.0) < _NEARLY:
             break
         share = np.where(excess > 1.0, AIM / excess, 1.0)

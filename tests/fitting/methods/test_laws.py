@@ -49,7 +49,7 @@ def by_method(method, reference=None):
         found = fit_two_stage(problem, found.unknowns, settings)
     if method == "concurrent":
         found = fit_concurrent(problem, found.unknowns, settings)
-    return np.array([shape.corners() for shape in panel_shapes(problem, reference, found.unknowns)])
+    return np.array([shape.corners() for shape in panel_shapes(problem, found.unknowns)])
 
 
 @cache

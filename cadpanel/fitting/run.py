@@ -12,10 +12,8 @@ from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.verdict import keeps_limits
-from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.catalogue import LOCAL, TWO_STAGE, method_for
 from cadpanel.fitting.methods.local import fit_local
-from cadpanel.fitting.methods.method import Fitted
-from cadpanel.fitting.methods.two_stage import fit_two_stage
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.settings import FitSettings
@@ -86,14 +84,12 @@ def _fit(
 
     def tell(round_: int, excess: float) -> None:
         if progress is not None:
-            progress("concurrent", round_, excess)
+            progress(how.method, round_, excess)
 
-    staged = fit_two_stage(posed, local.unknowns, how)
-    chosen: Fitted = {
-        "local": lambda: local,
-        "two_stage": lambda: staged,
-        "concurrent": lambda: fit_concurrent(posed, local.unknowns, how, tell),
-    }[how.method]()
+    staged = TWO_STAGE.fit(posed, [local.unknowns], how)
+    made = {LOCAL: local, TWO_STAGE: staged}
+    method = method_for(how)
+    chosen = made[method] if method in made else method.fit(posed, [local.unknowns], how, tell)
     shapes = panel_shapes(posed, chosen.unknowns)
     measures = measure(shapes, reference)
     return FitResult(
@@ -107,6 +103,7 @@ def _fit(
         starts=chosen.starts,
         agreed=chosen.agreed,
         iterations=chosen.iterations,
+        stopped=chosen.stopped,
         seconds=time.perf_counter() - began,
     )
 

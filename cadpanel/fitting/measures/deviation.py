@@ -12,7 +12,7 @@ from cadpanel.geometry.cone import cone_distance, plane_distance
 from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.patch_under import patch_under
 from cadpanel.geometry.shape import AnyShape, PanelShape
-from cadpanel.geometry.vectors import cross, unit
+from cadpanel.geometry.vectors import cross
 
 # Panels worked on together: their points and distances stay in the processor's cache.
 _CHUNK = 64
@@ -71,8 +71,7 @@ def _rulings(shape: AnyShape) -> tuple[Array, Array, Array]:
     if isinstance(shape, PanelShape):
         all_ = slice(1 if len(shape.patches) == 1 else None)
         return shape.points[all_], shape.directions[all_], shape.normals[all_]
-    along = unit(shape.outline[1:2] - shape.outline[:1])
-    return shape.outline[:1], along, shape.normal[None]
+    return shape.outline[:1], np.zeros((1, 3)), shape.normal[None]  # a plane's distance asks for no direction
 
 
 def _half_way(p: Array, t: Array, n: Array, radius: Array, half_angle: Array, sweep: Array) -> tuple[Array, Array]:

@@ -17,6 +17,7 @@ from cadpanel.fitting.measures.fit import Measures, largest_deviations, measure
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
 from cadpanel.reference.model import Seam
+from cadpanel.reference.strip import strip_of
 from tests.delivered import fitted as strip
 from tests.fitting.test_grids import fitted as fitted_grid
 from tests.fitting.test_grids import gable
@@ -224,20 +225,70 @@ def test_a_panel_that_moves_along_a_strip_drifts_along_it_and_not_across(by):
         assert seen.drift_across == pytest.approx([across], abs=EXACT)
 
 
-def test_an_end_that_leans_out_between_outer_corners_that_stay_drifts_by_its_inner_corners():
-    fold = folded_panel()
+@pytest.mark.parametrize("cut", [(1.0, 0.0, 0.0), (1.0, 0.2, 0.1)])
+@pytest.mark.parametrize("turns", [(0.0, 0.0), (0.06, -0.08)])
+def test_an_end_that_leans_out_between_outer_corners_that_stay_drifts_by_its_inner_corners(cut, turns):
+    """Inner corners drift by what they are out of the end's plane, counted the way the strip goes there."""
+    fold = folded_panel(turns=turns, cut_normals=((1.0, 0.0, 0.0), cut))
     outer = fold.corners()[1, [0, -1]]
     chord = outer[1] - outer[0]
-    lean = np.cross(chord, np.cross([1.0, 0.2, 0.2], chord))
-    tilted = replace(fold, cut_normals=np.array([fold.cut_normals[0], lean / np.linalg.norm(lean)]))
-    tilted = replace(tilted, cut_points=np.array([fold.cut_points[0], outer[0]]))
+    lean = np.cross(chord, np.cross([1.0, 0.3, 0.2], chord))
+    tilted = replace(
+        fold,
+        cut_normals=np.array([fold.cut_normals[0], lean / np.linalg.norm(lean)]),
+        cut_points=np.array([fold.cut_points[0], outer[0]]),
+    )
     seen = measure([tilted], alone(fold))
     assert seen.drift == pytest.approx([0.0], abs=EXACT)
-    inner = np.abs(tilted.corners()[1, 1:-1, 0] - 500.0).max()
+    sides = fold.corners()[1, [0, -1]] - fold.corners()[0, [0, -1]]
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    ways = np.array([2.0 * sides[0] + sides[1], sides[0] + 2.0 * sides[1]])
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    m = fold.cut_normals[1]
+    inner = np.abs((tilted.corners()[1, 1:-1] - fold.cut_points[1]) @ m / (ways @ m)).max()
     assert inner > 1.0
-    assert seen.drift_along == pytest.approx([inner], abs=EXACT)
+    assert seen.drift_along == pytest.approx([inner], abs=1e-6)
 
 
+def test_inner_corners_may_slide_along_an_end():
+    """Wider flanges bring them elsewhere on the same end."""
+    fold, other = (
+        folded_panel(cut_normals=2 * [(1.0, 0.2, 0.1)]),
+        folded_panel(sweep=0.9, cut_normals=2 * [(1.0, 0.2, 0.1)]),
+    )
+    strip_ = strip_of(alone(fold).panels[0], 4)
+    assert np.abs(fold.corners() - other.corners())[:, 2].max() > 10.0
+    assert strip_.along(other.corners())[:, 1:-1] == pytest.approx(np.zeros((2, 2)), abs=EXACT)
+
+
+def test_the_corner_that_drifted_most_counts():
+    fold, wide = folded_panel(), folded_panel(widths=(200.0, 230.0))
+    seen = measure([wide], alone(fold))
+    assert seen.drift == pytest.approx([30.0], abs=EXACT)
+    assert seen.drift_across == pytest.approx([30.0], abs=EXACT)
+    shape = random_polygon(4, 5)
+    outline = shape.outline.copy()
+    outline[2] += 12.0 * (outline[2] - outline.mean(axis=0)) / np.linalg.norm(outline[2] - outline.mean(axis=0))
+    assert measure([replace(shape, outline=outline)], alone(shape)).drift == pytest.approx([12.0], abs=EXACT)
+
+
+def test_corners_that_slide_along_sides_that_are_not_parallel_drift_along_them():
+    turns = (0.06, -0.08)
+    seen = measure([folded_panel(turns=turns, length=1040.0)], alone(folded_panel(turns=turns)))
+    assert seen.drift_across == pytest.approx([0.0], abs=EXACT)
+    assert seen.drift_along == pytest.approx(seen.drift, abs=EXACT)
+    assert seen.drift[0] > 20.0
+
+
+# ------------------------------------------------------------------------------------------------------------ deviation
+@pytest.mark.parametrize("half_angle", [0.0, 0.1, -0.1])
+def test_flanges_that_face_each_other_across_a_fold_of_half_a_turn_are_told_apart(half_angle):
+    """The far flange lies behind the near ruling's plane: only the ruling half-way over the fold parts them."""
+    fold = folded_panel(radius=150.0, sweep=3.1, half_angle=half_angle, widths=(900.0, 900.0))
+    assert measure([fold], alone(fold)).max_deviation.max() <= EXACT
+
+
+# ---------------------------------------------------------------------------------------------------- drift and the fit
 def test_what_the_fit_holds_in_its_limits_is_measured_within_them():
     """Inner corners are held to one point of their end each; what counts is the whole end."""
     m, how = strip().measures, FitSettings()

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from cadpanel.atomic.cylinder import fit_cylinder
     from cadpanel.atomic.plane import fit_plane
     from cadpanel.atomic.result import ConeFit, CylinderFit, PlaneFit
-    from cadpanel.brep.building.chain_skin import build_skin
-    from cadpanel.brep.building.sheet import build_solid
+    from cadpanel.brep.building.sheet import build_skin, build_solid
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.verify import Verification, verify
     from cadpanel.features.feature import Feature
@@ -41,7 +40,8 @@ if TYPE_CHECKING:
     from cadpanel.fitting.measures.fit import Measures
     from cadpanel.fitting.result import FitResult
     from cadpanel.fitting.settings import FitSettings, Weights
-    from cadpanel.geometry.shape import ConePatch, PanelShape, PlanePatch, PolygonShape
+    from cadpanel.geometry.patches import ConePatch, PlanePatch
+    from cadpanel.geometry.shape import PanelShape, PolygonShape
     from cadpanel.reference.model import PanelReference, Reference, Seam
     from cadpanel.reference.settings import ReferenceSettings
 
@@ -94,8 +94,7 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
-        "brep.building.chain_skin": ("build_skin",),
-        "brep.building.sheet": ("build_solid",),
+        "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
         "delivery.verify": ("Verification", "verify"),
         "features.feature": ("Feature",),
@@ -108,7 +107,8 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "fitting.measures.fit": ("Measures",),
         "fitting.result": ("FitResult",),
         "fitting.settings": ("FitSettings", "Weights"),
-        "geometry.shape": ("ConePatch", "PanelShape", "PlanePatch", "PolygonShape"),
+        "geometry.patches": ("ConePatch", "PlanePatch"),
+        "geometry.shape": ("PanelShape", "PolygonShape"),
         "reference.model": ("PanelReference", "Reference", "Seam"),
         "reference.settings": ("ReferenceSettings",),
     }

@@ -6,22 +6,18 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypedDict, Unpack, cast, overload
+from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.catalogue import Tilt
-from cadpanel.features.feature import Feature
-from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
-from cadpanel.fitting.settings import FitSettings, Method, Weights
-from cadpanel.geometry.chain_checks import SkinSide
-from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
+from cadpanel.fitting.settings import FitKeywords, FitSettings
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.reference.model import Reference
-from cadpanel.reference.settings import By, ReferenceSettings
+from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
 
 if TYPE_CHECKING:
     import build123d
@@ -34,40 +30,6 @@ if TYPE_CHECKING:
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
     from cadpanel.studies.table1 import Progress as CompareProgress
-
-
-class FitKeywords(TypedDict, total=False):
-    """The fields of `FitSettings`, as keywords of `fit` and `compare`."""
-
-    feature: str | Feature
-    max_deviation: float | None
-    tilt: Tilt
-    method: Method
-    gap_tolerance: float
-    drift_along: float
-    drift_across: float
-    min_radius: float
-    blend: str | Blend | Sequence[str | Blend]
-    weights: Weights | None
-    restarts: int
-    seed: int
-
-
-class ReferenceKeywords(TypedDict, total=False):
-    """The fields of `ReferenceSettings`, as keywords of `read` and `inspect`."""
-
-    seam_tolerance: float
-    unit: str | None
-    faces: str | Sequence[str] | None
-    divide: int | None
-    lip: float | None
-    grid: tuple[int, int] | None
-    by: By
-    stations: Sequence[float] | None
-    spine: str | Path | None
-    network: str | Path | None
-    mesh: str | Path | None
-    junctions: bool
 
 
 def read(
@@ -216,7 +178,7 @@ def deliver(
 
 
 def to_cadquery(
-    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> cadquery.Workplane:
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
@@ -236,11 +198,11 @@ def to_cadquery(
 
 
 @overload
-def to_build123d(panels: AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
+def to_build123d(panels: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
 @overload
 def to_build123d(panels: FitResult, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | AnyShape, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
 ) -> build123d.Compound:
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
@@ -256,13 +218,13 @@ def to_build123d(
     from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
     built = _build(panels, thickness, skin_side)
-    if isinstance(panels, PanelShape | PolygonShape):
-        return to_build123d_part(built[0].solid, panels.name)
-    return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+    if isinstance(panels, FitResult):
+        return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+    return to_build123d_part(built[0].solid, panels.name)
 
 
 def write_step(
-    panels: FitResult | AnyShape,
+    panels: FitResult | Panel,
     path: str | Path,
     *,
     thickness: float = 3.0,
@@ -292,14 +254,14 @@ def write_step(
 
 
 def _build(
-    panels: FitResult | AnyShape, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
+    panels: FitResult | Panel, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.sheets import build_panels
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return build_panels([panels] if isinstance(panels, PanelShape | PolygonShape) else panels.shapes, sheet)
+    return build_panels(panels.shapes if isinstance(panels, FitResult) else [panels], sheet)
 
 
-def _title(panels: FitResult | AnyShape) -> str:
-    return panels.name if isinstance(panels, PanelShape | PolygonShape) else Path(panels.reference.source).stem
+def _title(panels: FitResult | Panel) -> str:
+    return Path(panels.reference.source).stem if isinstance(panels, FitResult) else panels.name

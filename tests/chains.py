@@ -18,10 +18,11 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import dot
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.limits.corner_drift import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
+from tests.own_patches import AngleFirst, ByGirth, ByRoot, CurvedBy
 
 # Chains that a user might compose; the package has no names for them.
 COMPOSED: dict[str, Feature] = {
@@ -32,11 +33,22 @@ COMPOSED: dict[str, Feature] = {
     "cone-plane, cut square": Feature(Cone(), Plane(), cuts="square"),
     "roof edge": Feature(Plane(width=0.3, turn=0.0), Cone(radius=0.2, half_angle=(-0.04, 0.04)), Plane(), name="roof"),
 }
+# Chains of patches that a user might write.
+OWN: dict[str, Feature] = {
+    "own cylinder": Feature(CurvedBy()),
+    "own fold": Feature(Plane(), CurvedBy(), Plane()),
+    "own cone": Feature(AngleFirst(), cuts="parallel"),
+    "own flanges": Feature(ByRoot(), AngleFirst(), ByRoot()),
+    "own double fold": Feature(ByRoot(), ByGirth(), Plane(), CurvedBy(), ByRoot()),
+    "own rectangle": Feature(ByRoot(turn=0.0), cuts="square"),
+    "own roof edge": Feature(ByRoot(root=0.5), ByGirth(half_angle=(-0.04, 0.04)), CurvedBy(curvature=4.0), Plane()),
+}
 CHAINS: dict[str, Feature] = {
     **{name: feature(name) for name in CATALOGUE},
     **{f"{name}, tilt fixed": feature(name, tilt="fixed") for name, one in CATALOGUE.items() if one.cuts == "mitre"},
     "cone-spline-4": feature("cone-spline-4"),
     **COMPOSED,
+    **OWN,
 }
 POLYGONS: dict[str, Polygon] = {f"polygon of {corners}": Polygon(corners) for corners in (3, 5, 6)}
 FEATURES: dict[str, PanelFeature] = {**CHAINS, **POLYGONS}
@@ -59,17 +71,17 @@ def random_values(of: PanelFeature, seed: int, panels: int = 3) -> Array:
     curved = max(1, sum(of.curved))
     values[:, :2] = random.uniform(-0.05, 0.05, (panels, 2))
     values[:, 2:5] = random.uniform(-0.1, 0.1, (panels, 3))
-    for i, flat in enumerate(not one for one in of.curved):
-        at = of.patch_slice(i).start
-        if flat:
-            values[:, at] = random.uniform(0.1, 0.4, panels)
-            values[:, at + 1] = random.uniform(-0.05, 0.05, panels)
+    for i, patch in enumerate(of.patches):
+        if patch.kind == "plane":
+            dimensions = [random.uniform(0.1, 0.4, panels), random.uniform(-0.05, 0.05, panels)]
         else:
-            values[:, at] = random.uniform(0.1, 0.3, panels)
-            values[:, at + 1] = random.uniform(-0.03, 0.03, panels)
-            values[:, at + 2] = random.uniform(0.5, 1.5, panels) / curved
-    for end in (0, 1):
-        at = of.cut_slice(end).start
+            dimensions = [
+                random.uniform(0.1, 0.3, panels),
+                random.uniform(-0.03, 0.03, panels),
+                random.uniform(0.5, 1.5, panels) / curved,
+            ]
+        values[:, of.patch_slice(i)] = patch.numbers_for(np.stack(dimensions, axis=1))
+    for end, (at, _, _) in enumerate(of.cut_numbers.tolist()):
         values[:, at] = (end - 0.5) * random.uniform(0.9, 1.1, panels)
         values[:, at + 1] = random.uniform(-0.1, 0.1, panels)
         values[:, at + 2] = random.uniform(-0.2, 0.2, panels)

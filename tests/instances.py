@@ -8,8 +8,10 @@ from cadpanel.arrays import Array
 from cadpanel.features.catalogue import CATALOGUE, feature
 from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
+from cadpanel.features.rulings import Walk
 from cadpanel.geometry.frames import cayley
-from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
+from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 
 # Every feature that has a name; of the cone splines two.
 NAMES = [*CATALOGUE, "cone-spline-4", "cone-spline-6"]
@@ -47,7 +49,7 @@ def random_shapes(
             points=points[i],
             directions=directions[i],
             normals=normals[i],
-            patches=_patches(of, values[i], length),
+            patches=_patches(walked, i, length),
             cut_points=cut_points[i],
             cut_normals=cut_normals[i],
         )
@@ -55,13 +57,13 @@ def random_shapes(
     ]
 
 
-def _patches(of: Feature, values: Array, length: float) -> tuple[Patch, ...]:
+def _patches(walked: Walk, panel: int, length: float) -> tuple[Patch, ...]:
     patches: list[Patch] = []
-    for i, patch in enumerate(of.patches):
+    for i, patch in enumerate(walked.feature.patches):
         if patch.kind == "plane":
             patches.append(PlanePatch())
         else:
-            radius, half_angle, sweep = values[of.patch_slice(i)].tolist()
+            radius, half_angle, sweep = walked.dimensions[i].values[panel].tolist()
             patches.append(ConePatch(radius=length * radius, half_angle=half_angle, sweep=sweep, kind=patch.kind))
     return tuple(patches)
 
@@ -72,15 +74,16 @@ def _random_values(of: Feature, random: np.random.Generator, count: int, half_an
     values[:, :2] = random.uniform(-0.05, 0.05, (count, 2))
     values[:, 2:5] = random.uniform(-0.1, 0.1, (count, 3))
     for i, curved in enumerate(of.curved):
-        at = of.patch_slice(i).start
-        values[:, at] = random.uniform(0.1, 0.3 if curved else 0.4, count)
-        values[:, at + 1] = random.uniform(-0.05, 0.05, count)
+        dimensions = np.zeros((count, 3 if curved else 2))
+        dimensions[:, 0] = random.uniform(0.1, 0.3 if curved else 0.4, count)
+        dimensions[:, 1] = random.uniform(-0.05, 0.05, count)
         if curved:
-            values[:, at + 2] = random.uniform(0.5, 1.5, count) / sum(of.curved)
+            dimensions[:, 2] = random.uniform(0.5, 1.5, count) / sum(of.curved)
             if half_angle is not None:
                 # Neighbours of one half angle must differ in their radii, or none could tell where they part.
-                values[:, at] = random.uniform(*((0.1, 0.18), (0.22, 0.3))[i % 2], count)
-                values[:, at + 1] = half_angle
+                dimensions[:, 0] = random.uniform(*((0.1, 0.18), (0.22, 0.3))[i % 2], count)
+                dimensions[:, 1] = half_angle
+        values[:, of.patch_slice(i)] = of.patches[i].numbers_for(dimensions)
     for end in (0, 1):
         at = of.cut_slice(end).start
         values[:, at] = (end - 0.5) * random.uniform(0.9, 1.1, count)

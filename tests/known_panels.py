@@ -11,7 +11,9 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.end_curves import EndCurves
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.vectors import cross
 from cadpanel.reference.model import PanelReference, Reference, Seam
 
@@ -38,9 +40,12 @@ def end_curve(shape: PanelShape, end: int) -> EndCurves:
     )
 
 
-def sampled(shape: AnyShape, name: str) -> PanelReference:
+def sampled(shape: Panel, name: str) -> PanelReference:
     """The shape as a reference: every sample lies on it exactly."""
-    return _sampled_polygon(shape, name) if isinstance(shape, PolygonShape) else _sampled_chain(shape, name)
+    if isinstance(shape, PolygonShape):
+        return _sampled_polygon(shape, name)
+    assert isinstance(shape, PanelShape)
+    return _sampled_chain(shape, name)
 
 
 def _sampled_polygon(shape: PolygonShape, name: str) -> PanelReference:
@@ -105,7 +110,7 @@ def posed(reference: Reference, settings: FitSettings) -> tuple[Problem, tuple[A
     return pose(reference, [settings.feature_for(len(panel.edges)) for panel in reference.panels])
 
 
-def alone(*shapes: AnyShape) -> Reference:
+def alone(*shapes: Panel) -> Reference:
     """Panels that do not touch."""
     return Reference(
         source="known", panels=tuple(sampled(shape, f"panel {i + 1}") for i, shape in enumerate(shapes)), seams=()

@@ -8,12 +8,12 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, Patch, PlanePatch, PolygonShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 
 
-def rebuilt(
-    name: str, feature: str, rows: Sequence[Sequence[Sequence[float]]], patches: Sequence[PatchModel]
-) -> AnyShape:
+def rebuilt(name: str, feature: str, rows: Sequence[Sequence[Sequence[float]]], patches: Sequence[PatchModel]) -> Panel:
     """The panel with these corners [end][ruling], or [0][corner] of a polygon, and these patches.
 
     A single cone has two corners an end, which do not tell how its end leans: of chains with curved patches it takes

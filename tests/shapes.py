@@ -10,7 +10,8 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame
-from cadpanel.geometry.shape import ConePatch, PanelShape, Patch, PlanePatch
+from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.shape import PanelShape
 
 CHAINS = {
     "plane-cone-plane": "pcp",

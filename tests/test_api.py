@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import cast
 
@@ -11,14 +10,9 @@ import cadquery as cq
 import pytest
 
 import cadpanel as cp
-from cadpanel.api import FitKeywords
 from cadpanel.brep.step.file import read_step_shapes
 from tests.delivered import fitted, strip
 from tests.instances import random_polygon
-
-
-def test_the_keywords_of_fit_are_the_fields_of_its_settings() -> None:
-    assert set(FitKeywords.__annotations__) == {field.name for field in fields(cp.FitSettings) if field.init}
 
 
 def test_keywords_change_the_settings_that_are_given() -> None:

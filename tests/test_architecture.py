@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -88,6 +89,20 @@ def test_a_circle_between_two_files_of_a_room_is_caught(tmp_path: Path) -> None:
         f"{file.read_text(encoding='utf-8')}\nif __debug__:\n    import cadpanel.features.walk\n", encoding="utf-8"
     )
     assert "No circles between the files of a room" in broken_contracts(tmp_path)
+
+
+def asks_for_a_kind(text: str) -> list[str]:
+    """Where a program asks whether a panel or a feature is of one kind."""
+    return re.findall(r"isinstance\([^()]*,[^()]*\b(?:PanelShape|PolygonShape|Polygon|Feature)\b[^()]*\)", text)
+
+
+def test_nobody_asks_whether_a_panel_is_a_chain_or_a_polygon() -> None:
+    """A third kind is a class with the members of `Panel` and `PanelFeature`, not one more branch in many files."""
+    asking = {str(path): asks_for_a_kind(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+    assert {path: found for path, found in asking.items() if found} == {}
+    assert asks_for_a_kind("if isinstance(shape, PanelShape | PolygonShape):")
+    assert asks_for_a_kind("not isinstance(named, str | Feature)")
+    assert not asks_for_a_kind("isinstance(patch, ConePatch)")
 
 
 def test_every_room_of_the_cad_side_has_a_name() -> None:

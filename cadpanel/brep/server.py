@@ -8,20 +8,22 @@ import pickle
 import resource
 import sys
 import traceback
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_FACE
+from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import format_of
-from cadpanel.brep.files.model import Model
 from cadpanel.brep.files.packing import PackedModel, PackedProducts
 from cadpanel.brep.files.step import STEP
 from cadpanel.brep.files.step_products import read_products
 from cadpanel.brep.isolation.client import HEADER, WORKED_ON, Request, Task, Work, read_here
+from cadpanel.brep.kernel.placement import placed
 from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
@@ -36,32 +38,42 @@ def read(task: Task, path: Path, millimetres: float | None) -> PackedModel | Pac
     if task == "products":
         products = read_products(path, millimetres)
         names = tuple(product.name for product in products.shapes)
-        shapes = packed(compound_of(product.shape for product in products.shapes))
-        return PackedProducts(names=names, unit=products.unit, shapes=shapes)
+        whole = _placed(path.name, [product.shape for product in products.shapes])
+        return PackedProducts(names=names, unit=products.unit, shapes=packed(whole))
     form = format_of(path)
     model = form.read(path, millimetres)
+    whole = _placed(path.name, [part.shape for part in model.parts])
     if form is not STEP:
-        _try_out(model)
+        _try_out(path.name, whole)
     bare = tuple(replace(part, shape=None) for part in model.parts)
-    shapes = packed(compound_of(part.shape for part in model.parts))
-    return PackedModel(model=replace(model, parts=bare), shapes=shapes)
+    return PackedModel(model=replace(model, parts=bare), shapes=packed(whole))
 
 
-def _try_out(model: Model) -> None:
+def _placed(source: str, shapes: Sequence[TopoDS_Shape]) -> TopoDS_Shape:
+    """All shapes of a file as one compound without locations: what they share stays shared."""
+    try:
+        return placed(compound_of(shapes))
+    except Standard_Failure as error:
+        raise ReferenceFileError(
+            f"'{source}' puts a shape where the CAD kernel cannot put it ({error}): place it without a mirror or a "
+            "scale and export again."
+        ) from error
+
+
+def _try_out(source: str, whole: TopoDS_Shape) -> None:
     """Evaluate every face here, where a crash of the kernel does no harm.
 
     The STEP reader checks what it builds, and of 1500 damaged files none crashed later; the other readers take shapes
     over as they are.
     """
-    for part in model.parts:
-        for face in shapes_of(part.shape, TopAbs_FACE):
-            try:
-                sample_faces(face)
-            except (Standard_Failure, ValueError, FloatingPointError) as error:
-                raise ReferenceFileError(
-                    f"'{model.source}' holds a face that the CAD kernel cannot evaluate ({error}): repair the "
-                    "reference and export it again."
-                ) from error
+    for face in shapes_of(whole, TopAbs_FACE):
+        try:
+            sample_faces(face)
+        except (Standard_Failure, ValueError, FloatingPointError) as error:
+            raise ReferenceFileError(
+                f"'{source}' holds a face that the CAD kernel cannot evaluate ({error}): repair the reference and "
+                "export it again."
+            ) from error
 
 
 WORDS: dict[Work, str] = {"panels": "cutting", "survey": "measuring"}

@@ -2,39 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import COMPARISON, delivery_folder
 from cadpanel.delivery.records.comparison import ComparisonModel, write_comparison
+from cadpanel.delivery.records.settings import OF_A_COLUMN
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
 
 
+@options.made_of_settings
 def compare(
     reference: options.ReferenceFile,
     out: options.Out,
-    tilt: options.TiltOption = "free",
-    gap_tolerance: options.GapTolerance = None,
-    weights: options.WeightsOption = None,
-    drift_along: options.DriftAlong = 5.0,
-    drift_across: options.DriftAcross = 2.0,
-    min_radius: options.MinRadius = 10.0,
-    blend: options.BlendOption = None,
-    restarts: options.Restarts = 0,
-    seed: options.Seed = 0,
-    seam_tolerance: options.SeamTolerance = 1.0,
-    unit: options.Unit = None,
-    faces: options.Faces = None,
-    divide: options.Divide = None,
-    lip: options.LipBand = None,
-    grid: options.Grid = None,
-    by: options.GridBy = None,
-    stations: options.Stations = None,
-    spine: options.Spine = None,
-    network: options.Network = None,
-    mesh: options.Mesh = None,
-    junctions: options.Junctions = False,
+    settings: Annotated[FitSettings, options.Without(OF_A_COLUMN)],
+    how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
 ) -> None:
@@ -44,31 +29,6 @@ def compare(
 
     Exit codes: 0 the comparison is written; 2 refused.
     """
-    settings = options.fit_settings(
-        tilt=tilt,
-        gap_tolerance=gap_tolerance,
-        weights=weights,
-        drift_along=drift_along,
-        drift_across=drift_across,
-        min_radius=min_radius,
-        blend=blend,
-        restarts=restarts,
-        seed=seed,
-    )
-    how = options.reference_settings(
-        seam_tolerance=seam_tolerance,
-        unit=unit,
-        faces=faces,
-        divide=divide,
-        lip=lip,
-        grid=grid,
-        by=by,
-        stations=stations,
-        spine=spine,
-        network=network,
-        mesh=mesh,
-        junctions=junctions,
-    )
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
         comparison = _run(reference, how, settings, shown)
         write_comparison(comparison, folder / COMPARISON)

@@ -11,14 +11,13 @@ import typer
 
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
-from cadpanel.reference.settings import ReferenceSettings, choices_of
+from cadpanel.reference.settings import ReferenceSettings
 
 
+@options.made_of_settings
 def inspect(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="STEP, IGES, .brep or .3dm file.")],
-    unit: options.Unit = None,
-    faces: options.Faces = None,
-    seam_tolerance: options.SeamTolerance = 1.0,
+    how: Annotated[ReferenceSettings, options.Only(("unit", "faces", "seam_tolerance"))],
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")] = False,
 ) -> None:
     """Measure what a file holds: faces with names, layers and sizes, how they are curved, and the surfaces' lips.
@@ -27,9 +26,6 @@ def inspect(
 
     Exit codes: 0 the file is read; 2 refused.
     """
-    how = ReferenceSettings(
-        unit=unit, faces=None if faces is None else choices_of(faces), seam_tolerance=seam_tolerance
-    )
     start_reader()
     # Here, not above: neither help nor a refusal should wait for the CAD kernel.
     from cadpanel.brep.survey import survey

@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
         sentence on stderr; 130 interrupted; 143 killed.
     """
-    for gone in (signal.SIGTERM, signal.SIGHUP):
+    for gone in _goodbyes():
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored
             signal.signal(gone, _stop)
     try:
@@ -88,6 +88,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if status == EXIT_INTERRUPTED:
         sys.stderr.write("Interrupted.\n")
     return status if isinstance(status, int) else 0
+
+
+def _goodbyes() -> tuple[signal.Signals, ...]:
+    """The signals by which a system asks a program to end; Windows knows no terminal that hangs up."""
+    names = ("SIGTERM", "SIGHUP", "SIGBREAK")
+    return tuple(signal.Signals[name] for name in names if name in signal.Signals.__members__)
 
 
 def _refuse(sentence: str) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from rich.console import Console
@@ -14,25 +14,39 @@ from rich.text import Text
 from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+from cadpanel.terms.limits.catalogue import LIMITS
 
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5
+DASH = "-"
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
 
-_MEASURES: dict[str, Callable[[SummaryModel], str]] = {
-    "Largest corner gap, mm": lambda s: length(s.max_corner_gap),
-    "Largest seam gap, mm": lambda s: length(s.max_seam_gap),
-    "Largest kink, degrees": lambda s: f"{s.max_kink:.2f}",
-    "RMS deviation, mm": lambda s: length(s.rms_deviation),
-    "  against each alone": lambda s: multiple(s.local_rms_multiple),
-    "Largest deviation, mm": lambda s: length(s.max_deviation),
-    "Hausdorff distance, mm": lambda s: length(s.hausdorff),
-    "Largest drift along, mm": lambda s: f"{s.max_drift_along:.1f}",
-    "  of the panel's length": lambda s: f"{s.drift_along_percent:.2f} %",
-    "Largest drift across, mm": lambda s: f"{s.max_free_edge_drift:.1f}",
-    "  of the panel's length ": lambda s: f"{s.drift_across_percent:.2f} %",
-    "Tolerance and limits": lambda s: "met" if s.tolerance_met else "not met",
-}
+_MEASURES: tuple[tuple[str, Callable[[SummaryModel], str]], ...] = (
+    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap)),
+    ("Largest seam gap, mm", lambda s: length(s.max_seam_gap)),
+    ("Largest kink, degrees", lambda s: f"{s.max_kink:.2f}"),
+    ("RMS deviation, mm", lambda s: length(s.rms_deviation)),
+    ("  against each alone", lambda s: multiple(s.local_rms_multiple)),
+    ("Largest deviation, mm", lambda s: length(s.max_deviation)),
+    ("Hausdorff distance, mm", lambda s: length(s.hausdorff)),
+)
+
+
+def rows(summaries: Sequence[SummaryModel], *, held: bool = True) -> Iterator[tuple[str, list[str]]]:
+    """The headings and numbers of a table with one column a summary.
+
+    Args:
+        summaries: the columns.
+        held: whether there was a tolerance that may be met or not.
+    """
+    for heading, show in _MEASURES:
+        yield heading, [show(summary) for summary in summaries]
+    for row in (row for limit in LIMITS for row in limit.rows):
+        found = [getattr(summary, row.key) for summary in summaries]
+        if any(value is not None for value in found):
+            yield row.heading, [DASH if value is None else row.form.format(value) for value in found]
+    if held:
+        yield "Tolerance and limits", ["met" if summary.tolerance_met else "not met" for summary in summaries]
 
 
 def length(value: float) -> str:
@@ -42,7 +56,7 @@ def length(value: float) -> str:
 
 def multiple(value: float | None) -> str:
     """A ratio, or a dash where there is nothing to divide by."""
-    return "-" if value is None else f"{value:.2f} x"
+    return DASH if value is None else f"{value:.2f} x"
 
 
 def console() -> Console:
@@ -60,10 +74,8 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
         table.add_column(heading, justify="right", style="dim")
     table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
     columns = (report.baselines.local, report.baselines.two_stage, report.summary)
-    for name, show in _MEASURES.items():
-        if settings.gap_tolerance is None and name.startswith("Tolerance"):
-            continue
-        table.add_row(name.rstrip(), *(_marked(show(column)) for column in columns))
+    for heading, numbers in rows(columns, held=settings.gap_tolerance is not None):
+        table.add_row(heading, *map(_marked, numbers))
     out = console()
     out.print()
     out.print(table)
@@ -148,8 +160,8 @@ def print_comparison(comparison: ComparisonModel) -> None:
     for index, (first, second) in enumerate(comparison.seams):
         table.add_row(Text(f"{first} - {second}"), *(length(c.max_corner_gap[index]) for c in comparison.columns))
     table.add_section()
-    for name, show in _MEASURES.items():
-        table.add_row(name.rstrip(), *(_marked(show(column.summary)) for column in comparison.columns))
+    for heading, numbers in rows([column.summary for column in comparison.columns]):
+        table.add_row(heading, *map(_marked, numbers))
     table.add_section()
     table.add_row("RMS of each panel alone, mm", *(length(c.local_rms_deviation) for c in comparison.columns))
     table.add_row("Time of the fit, s", *(f"{column.seconds:.1f}" for column in comparison.columns))

@@ -7,20 +7,22 @@ from collections import Counter
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
-from cadpanel.delivery.folder import PANELS, REPORT, SKINS, delivery_folder
-from cadpanel.delivery.outputs.step_files import write_skins, write_solids
+from cadpanel.delivery.folder import REPORT, delivery_folder
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.output import Delivery
+from cadpanel.delivery.outputs.step_files import SKINS
 from cadpanel.delivery.records.from_fit import (
     baselines_record,
     panel_records,
     reference_record,
     seam_records,
-    settings_record,
     solve_record,
 )
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, TimingModel, write_report
+from cadpanel.delivery.records.settings import settings_record
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.delivery.sheets import PanelSheet, Progress, build_panels, say_nothing
+from cadpanel.delivery.sheets import Progress, build_panels, say_nothing
 from cadpanel.delivery.verify import prove
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
@@ -75,7 +77,8 @@ def fill_delivery(
         built = build_panels(result.shapes, sheet, tell)
         panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
         built_at = time.perf_counter()
-        _write(folder, built, Path(result.reference.source).stem, sheet, tell, helper)
+        delivery = Delivery(panels=built, title=Path(result.reference.source).stem, sheet=sheet)
+        _write(folder, delivery, tell, helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
         certificate = prove(folder, panels, seams, sheet.thickness, sheet.skin_side, helper)
@@ -104,22 +107,15 @@ def fill_delivery(
     return report
 
 
-def _write(
-    folder: Path,
-    built: tuple[PanelSheet, ...],
-    title: str,
-    sheet: SheetSettings,
-    tell: Progress,
-    helper: Helper | None,
-) -> None:
-    """The skins first: a helper reads them while the panels are being written."""
-    tell("write", 0, 2)
-    write_skins(folder / SKINS, built, title, sheet.schema)
-    if helper is not None:
-        helper.begin(folder / SKINS)
-    tell("write", 1, 2)
-    write_solids(folder / PANELS, built, title, sheet.schema)
-    tell("write", 2, 2)
+def _write(folder: Path, delivery: Delivery, tell: Progress, helper: Helper | None) -> None:
+    """Every output that is always there; a helper reads the skins while the others are being written."""
+    wanted = [output for output in OUTPUTS if output.always]
+    for place, output in enumerate(wanted):
+        tell("write", place, len(wanted))
+        output.write(folder, delivery)
+        if helper is not None and SKINS in output.files:
+            helper.begin(folder / SKINS)
+    tell("write", len(wanted), len(wanted))
 
 
 def _demand(certificate: CertificateModel) -> None:

@@ -15,16 +15,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
 from cadpanel.errors import CadpanelError, DeliveryError
 
-PANELS = "panels.step"
-SKINS = "skins.step"
 REPORT = "report.json"
 COMPARISON = "compare.json"
 
 MARKS_OF_A_DELIVERY = (REPORT, COMPARISON)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
-OWN_FILES = frozenset({REPORT, COMPARISON, PANELS, SKINS})
+OWN_FILES = frozenset({REPORT, COMPARISON, *(name for output in OUTPUTS for name in output.files)})
 """All that cadpanel writes; whatever else stands in a delivery is someone's work and is never deleted."""
 LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave in a folder that people look into; it goes with the delivery."""

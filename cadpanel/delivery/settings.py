@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.fitting.settings import require
-from cadpanel.geometry.chain_checks import SkinSide
 from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET
+from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.setting import Option, Range, check_ranges, setting
 
 Schema = Literal["AP242", "AP214"]
 
@@ -23,9 +23,13 @@ class SheetSettings:
         schema: of the STEP files, "AP242" or "AP214".
     """
 
-    thickness: float = 3.0
-    skin_side: SkinSide = "outer"
-    schema: Schema = "AP242"
+    thickness: float = setting(
+        3.0,
+        within=Range(what="sheet thickness", least=THINNEST_SHEET, most=THICKEST_SHEET, unit=" mm"),
+        option=Option(metavar="MM", help="Of the sheet."),
+    )
+    skin_side: SkinSide = setting("outer", option=Option(help="Is the fitted skin the sheet's outer or inner face?"))
+    schema: Schema = setting("AP242", option=Option(help="Of the STEP files."))
 
     def __post_init__(self) -> None:
         """Check every setting.
@@ -33,7 +37,7 @@ class SheetSettings:
         Raises:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
-        require("sheet thickness", self.thickness, least=THINNEST_SHEET, most=THICKEST_SHEET, unit=" mm")
+        check_ranges(self)
         _require_one_of("skin side", self.skin_side, get_args(SkinSide))
         _require_one_of("STEP schema", self.schema, get_args(Schema))
 

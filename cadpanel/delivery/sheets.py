@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.geometry.shape import AnyShape
-from cadpanel.geometry.volume import sheet_volume, skin_area
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.volume import sheet_volume
 
 # What is going on, how much of it is done, and of how much.
 Progress = Callable[[str, int, int], None]
@@ -29,7 +29,7 @@ class PanelSheet:
         notes: what the fabricator should know, one sentence each.
     """
 
-    shape: AnyShape
+    shape: Panel
     solid: Solid
     skin: Shell
     area: float
@@ -39,7 +39,7 @@ class PanelSheet:
 
 
 def build_panels(
-    shapes: Sequence[AnyShape], sheet: SheetSettings, progress: Progress | None = None
+    shapes: Sequence[Panel], sheet: SheetSettings, progress: Progress | None = None
 ) -> tuple[PanelSheet, ...]:
     """Build the sheet and the skin of every panel.
 
@@ -59,7 +59,7 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
-def _build(shape: AnyShape, sheet: SheetSettings) -> PanelSheet:
+def _build(shape: Panel, sheet: SheetSettings) -> PanelSheet:
     built = build_panel(shape, sheet.thickness, sheet.skin_side)
     straight = built.straightened
     notes = tuple(
@@ -71,7 +71,7 @@ def _build(shape: AnyShape, sheet: SheetSettings) -> PanelSheet:
         shape=straight.shape,
         solid=built.solid,
         skin=built.skin,
-        area=skin_area(straight.shape),
+        area=straight.shape.area(),
         volume=sheet_volume(straight.shape, sheet.thickness, sheet.skin_side),
         moved=straight.largest_move,
         notes=notes,

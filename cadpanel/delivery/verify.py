@@ -11,12 +11,14 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
 from cadpanel.brep.proof.parallel import Helper
-from cadpanel.delivery.folder import PANELS, REPORT, SKINS
+from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, read_report
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.chain_checks import SkinSide
+from cadpanel.geometry.sheet_checks import SkinSide
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,7 +50,7 @@ def verify(folder: str | Path) -> Verification:
     place = Path(folder)
     if not place.is_dir():
         raise DeliveryError(f"'{folder}' is not a folder: name one that 'cadpanel fit' wrote.")
-    for name in (REPORT, PANELS, SKINS):
+    for name in (REPORT, *(file for output in OUTPUTS if output.always for file in output.files)):
         if not (place / name).is_file():
             raise DeliveryError(f"'{folder}' holds no {name}, so it is no whole delivery: write it again.")
     report = read_report(place / REPORT)

@@ -11,9 +11,9 @@ from cadpanel.geometry.vectors import cross, dot
 
 
 def cut_planes(walked: Walk) -> tuple[Array, Array]:
-    """The cut planes m . x = s: m (panels, 2, 3), not of unit length, and s (panels, 2)."""
-    feature, values = walked.feature, walked.values
-    cuts = np.stack([values[:, feature.cut_slice(end)] for end in (0, 1)], axis=1)
+    """The cut planes m . x = s: m (panels, ends, 3), not of unit length, and s (panels, ends)."""
+    feature = walked.feature
+    cuts = walked.values[:, feature.cut_numbers]
     m = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
     if not carried(feature):
         return m, cuts[..., 0]
@@ -23,17 +23,17 @@ def cut_planes(walked: Walk) -> tuple[Array, Array]:
 
 
 def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
-    """How `cut_planes` follow the numbers: dm (panels, 2, 3, N) and ds (panels, 2, N)."""
+    """How `cut_planes` follow the numbers: dm (panels, ends, 3, N) and ds (panels, ends, N)."""
     feature, anchor = walked.feature, walked.anchor
     panels, count = walked.values.shape
-    dm, ds = np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))
-    for end in (0, 1):
-        at = feature.cut_slice(end).start
-        ds[:, end, at] = 1.0
+    ends = len(feature.cut_numbers)
+    dm, ds = np.zeros((panels, ends, 3, count)), np.zeros((panels, ends, count))
+    for end, (place, skew, tilt) in enumerate(feature.cut_numbers.tolist()):
+        ds[:, end, place] = 1.0
         if not carried(feature):
-            dm[:, end, 0, at + 1] = dm[:, end, 2, at + 2] = 1.0
+            dm[:, end, 0, skew] = dm[:, end, 2, tilt] = 1.0
             continue
-        for number, axis in ((at + 1, anchor.b), (at + 2, anchor.n)):
+        for number, axis in ((skew, anchor.b), (tilt, anchor.n)):
             dm[:, end, :, number] = axis[:, 0]
             ds[:, end, number] = dot(axis[:, 0], anchor.p[:, 0])
     if carried(feature):

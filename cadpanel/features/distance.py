@@ -30,8 +30,7 @@ def patch_distance(walked: Walk, x: Array, patch: int) -> Array:
     p, t, n = _carrier(walked, patch)
     if not walked.feature.curved[patch]:
         return plane_distance(x, p, n)
-    start = walked.feature.patch_slice(patch).start
-    return cone_distance(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+    return cone_distance(x, p, t, n, *_cone(walked, patch))
 
 
 def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Array]:
@@ -39,8 +38,7 @@ def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Arr
     p, t, n = _carrier(walked, patch)
     if not walked.feature.curved[patch]:
         return plane_distance(x, p, n), plane_inner(x, n)
-    start = walked.feature.patch_slice(patch).start
-    return cone_distance_inner(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+    return cone_distance_inner(x, p, t, n, *_cone(walked, patch))
 
 
 def patch_outer(walked: Walk, patch: int) -> Array:
@@ -50,9 +48,7 @@ def patch_outer(walked: Walk, patch: int) -> Array:
     outer = np.zeros((len(walked.values), INNER, walked.values.shape[1]))
     outer[:, :6] = walked.carriers.twist[:, patch]
     if walked.feature.curved[patch]:
-        start = walked.feature.patch_slice(patch).start
-        outer[:, 6, start] = 1.0
-        outer[:, 7, start + 1] = 1.0
+        outer[:, 6:, walked.feature.patch_slice(patch)] = walked.dimensions[patch].by_numbers()[..., :2, :]
     return outer
 
 
@@ -61,13 +57,15 @@ def skin_normals(walked: Walk, x: Array, patch: IntArray) -> Array:
     normals = np.empty((*patch.shape, 3))
     for i, curved in enumerate(walked.feature.curved):
         p, t, n = _carrier(walked, i)
-        if not curved:
-            here = np.broadcast_to(n[:, None], normals.shape)
-        else:
-            start = walked.feature.patch_slice(i).start
-            here = cone_normal(x, p, t, n, walked.values[:, start], walked.values[:, start + 1])
+        here = cone_normal(x, p, t, n, *_cone(walked, i)) if curved else n[:, None]
         normals = np.where((patch == i)[..., None], here, normals)
     return normals
+
+
+def _cone(walked: Walk, patch: int) -> tuple[Array, Array]:
+    """Radius and half angle (panels,) of a curved patch."""
+    values = walked.dimensions[patch].values
+    return values[:, 0], values[:, 1]
 
 
 def _carrier(walked: Walk, patch: int) -> tuple[Array, Array, Array]:

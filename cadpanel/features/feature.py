@@ -10,12 +10,16 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
+from cadpanel.features.chain_shapes import chain_shapes
 from cadpanel.features.independence import refuse_dependent
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, chain_edges
+from cadpanel.features.patch_checks import check_patch
 from cadpanel.features.patches import Patch
+from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Cuts, Points, Walk
 from cadpanel.features.walk import end_points, walk
+from cadpanel.geometry.shape import PanelShape
 
 MOST_PATCHES = 64
 
@@ -61,15 +65,13 @@ class Feature:
         """Lay out the numbers, and refuse a chain in which some of them depend on the others.
 
         Raises:
-            SettingsError: there is no patch, a number is none, or numbers depend on each other; the message names them.
+            SettingsError: there is no patch, one lacks what the package asks of it, a number is none, or numbers
+                depend on each other; the message names them.
         """
         if not 1 <= len(patches) <= MOST_PATCHES:
             raise SettingsError(f"a feature has between 1 and {MOST_PATCHES} patches, not {len(patches)}")
         for patch in patches:
-            if isinstance(patch, type) or not (hasattr(patch, "kind") and hasattr(patch, "carry")):
-                raise SettingsError(
-                    f"a feature is made of patches like Plane(), Cone() or Cylinder(), not of {patch!r}"
-                )
+            check_patch(patch)
         word: object = name
         if word is not None and not (isinstance(word, str) and word.strip() and word.isprintable()):
             raise SettingsError(f"the name of a feature must be a word that can be printed, not {name!r}")
@@ -115,6 +117,16 @@ class Feature:
     def corner_count(self) -> int:
         """Number of corners."""
         return 2 * (len(self.patches) + 1)
+
+    @property
+    def cut_numbers(self) -> IntArray:
+        """(2, 3) where position, skew and tilt of both cut planes stand among `numbers`."""
+        return np.arange(len(self.numbers) - 6, len(self.numbers), dtype=np.intp).reshape(2, 3)
+
+    @property
+    def four_sided(self) -> bool:
+        """A chain has two ends and two sides."""
+        return True
 
     def in_units(self, length: float) -> Self:
         """The same feature with lengths counted in units of `length` mm."""
@@ -166,3 +178,7 @@ class Feature:
     def arcs(self, walked: Walk) -> Points:
         """The arc points (n, arcs, 3) of walked panels."""
         return end_points(walked, walked.arcs)
+
+    def shapes(self, walked: Walk, placed: Placed) -> list[PanelShape]:
+        """Walked panels in the coordinates of the reference's file, mm."""
+        return chain_shapes(walked, placed)

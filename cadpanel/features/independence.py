@@ -8,7 +8,9 @@ from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
 from cadpanel.features.cut_planes import cut_plane_rates
 from cadpanel.features.distance import patch_distance_inner, patch_outer
+from cadpanel.features.numbers import POWERS
 from cadpanel.features.panel_edges import ARC_SHARES
+from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.features.walk import end_points, walk
 
@@ -18,6 +20,8 @@ NO_MOTION = 1e-9
 TAKES_PART = 0.05
 # Panels at random numbers on which a feature is tried; dependent is what is so on all of them.
 TRIALS = 3
+# What the dimensions of patches on such a panel are.
+SPANS = {"width": (0.1, 0.3), "turn": (-0.1, 0.1), "radius": (0.2, 0.6), "half_angle": (0.02, 0.1), "sweep": (0.2, 0.5)}
 # The largest of a feature's fixed lengths on such a panel.
 LARGEST_FIXED = 0.3
 
@@ -84,16 +88,13 @@ def motions(feature: PanelFeature, values: Array) -> Array:
 def typical_values(feature: PanelFeature) -> Array:
     """(TRIALS, numbers) numbers of plausible panels about 1 long; always the same."""
     random = np.random.default_rng(0)
-    spans = {"width": (0.1, 0.3), "radius": (0.2, 0.6), "half_angle": (0.02, 0.1), "sweep": (0.2, 0.5)}
-    unknowns = np.empty((TRIALS, len(feature.free)))
-    for column, index in enumerate(feature.free):
-        number = feature.numbers[index]
-        what = number.name.rpartition(" ")[2]
-        low, high = spans.get(what, (-0.1, 0.1))
-        if what == "position":
-            low, high = (-0.6, -0.4) if "cut 0" in number.name else (0.4, 0.6)
-        unknowns[:, column] = random.uniform(low, high, TRIALS)
-    return _in_scale(feature, feature.expand(unknowns))
+    values = random.uniform(-0.1, 0.1, (TRIALS, len(feature.numbers)))
+    for i, patch in enumerate(feature.patches):
+        least, greatest = np.array([SPANS[what] for what in DIMENSIONS[patch.kind]]).T
+        values[:, feature.patch_slice(i)] = patch.numbers_for(random.uniform(least, greatest, (TRIALS, len(least))))
+    for sign, (position, _, _) in zip((-1.0, 1.0), feature.cut_numbers.tolist(), strict=True):
+        values[:, position] = sign * random.uniform(0.4, 0.6, TRIALS)
+    return _in_scale(feature, feature.expand(values[:, feature.free]))
 
 
 def _in_scale(feature: PanelFeature, values: Array) -> Array:
@@ -101,10 +102,11 @@ def _in_scale(feature: PanelFeature, values: Array) -> Array:
 
     All by one factor: two cylinders of one radius depend on each other, two of different radii do not.
     """
-    fixed = {i: number.fixed for i, number in enumerate(feature.numbers) if number.unit == "length" and number.fixed}
-    largest = max(map(abs, fixed.values()), default=1.0)
-    for i, length in fixed.items():
-        values[:, i] = LARGEST_FIXED * length / largest
+    powers = [POWERS[number.unit] for number in feature.numbers]
+    fixed = {i: number.fixed for i, number in enumerate(feature.numbers) if powers[i] and number.fixed}
+    largest = max((abs(value) ** (1.0 / powers[i]) for i, value in fixed.items()), default=1.0)
+    for i, value in fixed.items():
+        values[:, i] = value * (LARGEST_FIXED / largest) ** powers[i]
     return values
 
 

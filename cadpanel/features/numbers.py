@@ -15,7 +15,10 @@ Value = float | tuple[float | None, float | None] | None
 LARGEST = 1e9
 """No length in mm or angle beyond this is one of a panel."""
 
-Unit = Literal["length", "angle", "slope"]
+Unit = Literal["length", "angle", "slope", "curvature", "root length"]
+
+POWERS: dict[Unit, float] = {"length": 1.0, "angle": 0.0, "slope": 0.0, "curvature": -1.0, "root length": 0.5}
+"""The power of a length that each unit counts in, by which numbers follow the unit of length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +27,8 @@ class Number:
 
     Attributes:
         name: what it is, for example "patch 1: half_angle".
-        unit: "length" (mm, or units of the solver's length), "angle" (radians) or "slope".
+        unit: one of POWERS; lengths in mm or units of the solver's length (a curvature in one over them), angles in
+            radians.
         fixed: the value it is held at, or None where the fit is free to choose it.
         lower, upper: bounds of what the fit may choose.
     """
@@ -78,10 +82,11 @@ class Number:
 
     def in_units(self, length: float) -> Number:
         """The same number with lengths counted in units of `length` mm."""
-        if self.unit != "length":
+        if POWERS[self.unit] == 0.0:
             return self
-        fixed = None if self.fixed is None else self.fixed / length
-        return replace(self, fixed=fixed, lower=self.lower / length, upper=self.upper / length)
+        one = length ** POWERS[self.unit]
+        fixed = None if self.fixed is None else self.fixed / one
+        return replace(self, fixed=fixed, lower=self.lower / one, upper=self.upper / one)
 
 
 def _finite(name: str, value: object, open_: float) -> float:

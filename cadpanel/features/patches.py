@@ -1,6 +1,29 @@
-"""Patches: each carries one ruling to the next, and tells how the next moves when one of its numbers changes.
+"""Patches: planes, cones and cylinders, each told by numbers of its own that the fit may choose.
 
-A patch that is new to the package is one class here (or in a user's own file) with the same four members.
+A patch that is new to the package is one class here (or in a user's own file) with the same four members. Its surface
+is a plane, a cone or a cylinder, as nothing else is rolled or folded exactly; what is new is the numbers that tell of
+it, which the fit then chooses, bounds or holds. Whoever needs the surface (distances, normals, the walk, limits,
+solids) asks for its dimensions, and whoever lays a start asks for the numbers of some dimensions. A cylinder told by
+the curvature of its sheet, which is bent to a radius of 2 m at most:
+
+    @dataclass(frozen=True)
+    class Bent:
+        kind = "cylinder"
+
+        def numbers(self):
+            return Number("sweep", "angle"), Number("curvature", "curvature", lower=1 / 2000.0)
+
+        def dimensions(self, values):
+            sweep, curvature = values.T
+            zero = np.zeros_like(sweep)
+            radius = [zero, -1.0 / curvature**2]
+            rates = np.stack([radius, [zero, zero], [zero + 1.0, zero]])
+            return Dimensions(np.stack([1.0 / curvature, zero, sweep], axis=1), np.moveaxis(rates, 2, 0))
+
+        def numbers_for(self, dimensions):
+            return np.stack([dimensions[:, 2], 1.0 / dimensions[:, 0]], axis=1)
+
+A patch that lacks a member, or whose members disagree, is refused when a feature is made of it: see `patch_checks`.
 """
 
 from __future__ import annotations
@@ -13,49 +36,67 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
 from cadpanel.features.numbers import LARGEST, Number, Value
-from cadpanel.geometry.frames import rotate_about, rotation_twist
-from cadpanel.geometry.vectors import cross
+
+Kind = Literal["plane", "cone", "cylinder"]
+
+DIMENSIONS: dict[Kind, tuple[str, ...]] = {
+    "plane": ("width", "turn"),
+    "cone": ("radius", "half_angle", "sweep"),
+    "cylinder": ("radius", "half_angle", "sweep"),
+}
+"""What a patch of each kind measures, in this order; see `Plane` and `Cone`. A cylinder's half angle is 0."""
 
 _QUARTER = 0.5 * np.pi
 
 
 @dataclass(frozen=True, slots=True)
-class Frames:
-    """A batch of n ruling frames: point p, axes b, t, n, each (n, 3)."""
+class Dimensions:
+    """What n patches of one kind measure, whatever numbers they are told by.
 
-    p: Array
-    b: Array
-    t: Array
-    n: Array
+    Attributes:
+        values: (n, d) as DIMENSIONS lists them, lengths in the unit of the patch's own numbers, angles in radians.
+        rates: (n, d, numbers) how they follow the patch's own numbers, None where the numbers are the dimensions.
+    """
+
+    values: Array
+    rates: Array | None = None
+
+    def by_numbers(self) -> Array:
+        """The rates (n or 1, d, numbers)."""
+        return np.eye(self.values.shape[1])[None] if self.rates is None else self.rates
+
+    def take(self, part: slice) -> Dimensions:
+        """Those of some of the panels."""
+        return Dimensions(self.values[part], None if self.rates is None else self.rates[part])
 
 
 class Patch(Protocol):
-    """What the chain asks of a patch.
+    """What a chain asks of a patch. Patches are keys of dictionaries: a frozen dataclass is one.
 
     Attributes:
         kind: "plane", "cone" or "cylinder", as reports and solids name it.
     """
 
     @property
-    def kind(self) -> Literal["plane", "cone", "cylinder"]:
+    def kind(self) -> Kind:
         """How reports and solids name it."""
         ...
 
     def numbers(self) -> tuple[Number, ...]:
-        """The patch's own numbers in the order in which `carry` takes them."""
+        """The patch's own numbers, each with its unit and what its author holds it at or within."""
         ...
 
-    def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
-        """Carry the frames over the patch.
+    def dimensions(self, values: Array) -> Dimensions:
+        """What patches with these numbers (n, numbers) measure.
 
-        Args:
-            frames: n frames on one edge of the patch.
-            values: (n, numbers) the patch's numbers for each panel.
-            way: +1.0 walks over the whole patch towards b, -1.0 towards -b, +-0.5 half of it, and so on.
+        The numbers come in any unit of length, so lengths that are no number of the patch have no place here.
+        """
+        ...
 
-        Returns:
-            the n frames on arrival, and (n, 6, numbers) the twist of the arrival frame for each number while the
-            starting frame is held.
+    def numbers_for(self, dimensions: Array) -> Array:
+        """(n, numbers) the numbers of patches with these dimensions (n, d), or of those nearest to them.
+
+        Whatever the author holds: that is seen to afterwards.
         """
         ...
 
@@ -90,18 +131,13 @@ class Plane:
             ),
         )
 
-    def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
-        """See `Patch.carry`; on a plane only the sign of `way` and its share of both numbers matter."""
-        width, turn = way * values[:, 0], way * values[:, 1]
-        p = frames.p + width[:, None] * frames.b
-        cosine, sine = np.cos(turn)[:, None], np.sin(turn)[:, None]
-        # Right-handed about n: t turns towards n x t = -b, b turns towards t.
-        t = cosine * frames.t - sine * frames.b
-        b = cosine * frames.b + sine * frames.t
-        twist = np.zeros((len(p), 6, 2))
-        twist[:, 3:, 0] = way * frames.b
-        twist[:, :, 1] = way * rotation_twist(frames.n, p)
-        return Frames(p, b, t, frames.n), twist
+    def dimensions(self, values: Array) -> Dimensions:
+        """The numbers themselves."""
+        return Dimensions(values)
+
+    def numbers_for(self, dimensions: Array) -> Array:
+        """The dimensions themselves."""
+        return dimensions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -154,21 +190,13 @@ class Cone:
             ),
         )
 
-    def carry(self, frames: Frames, values: Array, way: float) -> tuple[Frames, Array]:
-        """See `Patch.carry`; `way` is the share of the sweep."""
-        radius, half_angle, sweep = values[:, 0, None], values[:, 1, None], way * values[:, 2]
-        axis = np.cos(half_angle) * frames.t - np.sin(half_angle) * frames.n
-        centre = frames.p - radius * frames.n
-        t, n = rotate_about(axis, sweep, frames.t), rotate_about(axis, sweep, frames.n)
-        arrived = Frames(centre + radius * n, cross(t, n), t, n)
-        twist = np.zeros((len(t), 6, 3))
-        twist[:, 3:, 0] = n - frames.n
-        # Tilting the axis by the half angle is a rotation about -b at the start, undone about -b on arrival.
-        omega = arrived.b - frames.b
-        twist[:, :3, 1] = omega
-        twist[:, 3:, 1] = cross(centre, omega)
-        twist[:, :, 2] = way * rotation_twist(axis, centre)
-        return arrived, twist
+    def dimensions(self, values: Array) -> Dimensions:
+        """The numbers themselves."""
+        return Dimensions(values)
+
+    def numbers_for(self, dimensions: Array) -> Array:
+        """The dimensions themselves."""
+        return dimensions
 
 
 def Cylinder(*, radius: Value = None, sweep: Value = None) -> Cone:  # noqa: N802 - named like its siblings

@@ -13,8 +13,10 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
+from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
+from cadpanel.geometry.shape import PolygonShape
 
 MOST_CORNERS = 64
 
@@ -75,21 +77,20 @@ class Polygon:
         """One from each corner to the next."""
         return polygon_edges(self.corner_count)
 
+    @property
+    def cut_numbers(self) -> IntArray:
+        """(0, 3) a polygon has edges all round and no ends that a plane could cut."""
+        return np.empty((0, 3), dtype=np.intp)
+
+    @property
+    def four_sided(self) -> bool:
+        """A polygon's edges are alike: none is an end or a side."""
+        return False
+
     def patch_slice(self, patch: int) -> slice:
-        """A plane alone has no numbers of its own.
-
-        Raises:
-            TypeError: always.
-        """
-        raise TypeError(f"patch {patch} of a polygon has no numbers of its own")
-
-    def cut_slice(self, end: int) -> slice:
-        """A polygon has edges all round and no ends.
-
-        Raises:
-            TypeError: always.
-        """
-        raise TypeError(f"a polygon has no end {end} that a plane could cut")
+        """Empty: the plane's numbers are those of where it stands."""
+        del patch
+        return slice(0, 0)
 
     def in_units(self, length: float) -> Self:
         """The same feature: it fixes no length."""
@@ -126,7 +127,7 @@ class Polygon:
         plane = Rulings(p, axes[:, None, :, 0], axes[:, None, :, 1], axes[:, None, :, 2], twist)
         empty = np.zeros((panels, 0, 3))
         none = Rulings(empty, empty, empty, empty, None if twist is None else twist[:, :0])
-        return Walk(self, values, plane, none, plane, none)
+        return Walk(self, values, (), plane, none, plane, none)
 
     def corners(self, walked: Walk) -> Points:
         """The corners (n, corners, 3) of walked panels."""
@@ -146,3 +147,11 @@ class Polygon:
         """No arc points (n, 0, 3): all edges are straight."""
         none = np.zeros((len(walked.values), 0, 3))
         return Points(none, None if walked.anchor.twist is None else np.zeros((*none.shape, walked.values.shape[1])))
+
+    def shapes(self, walked: Walk, placed: Placed) -> list[PolygonShape]:
+        """Walked panels in the coordinates of the reference's file, mm."""
+        outlines, normals = placed.points(self.corners(walked).position), placed.directions(walked.anchor.n)[:, 0]
+        return [
+            PolygonShape(name=name, feature=self.name, outline=outlines[i], normal=normals[i])
+            for i, name in enumerate(placed.names)
+        ]

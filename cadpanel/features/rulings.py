@@ -2,30 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol, Self
+from typing import Literal, Protocol, Self, runtime_checkable
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge
-from cadpanel.features.patches import Patch
+from cadpanel.features.patches import Dimensions, Patch
+from cadpanel.features.placed import Placed
+from cadpanel.geometry.panel import Panel
 
 Cuts = Literal["mitre", "upright", "parallel", "square"]
 
 
+@runtime_checkable
 class PanelFeature(Protocol):
     """What fits, terms and seams ask of anything that can be fitted to one panel: a chain or a polygon.
 
     Attributes:
         name: as reports call it.
         patches: in the order of the walk.
-        cuts: how the planes lie that cut the two ends.
+        cuts: how the planes lie that cut the ends.
+        cut_numbers: (ends, 3) where position, skew and tilt of each cut plane stand among `numbers`; (0, 3) for what
+            has no ends.
         anchor: index of the patch in whose middle the walk starts.
         numbers: all numbers.
         free: (free,) indices of the numbers that the fit may choose.
         curved: for each patch whether it is a cone or cylinder.
         edges: the boundary, edge by edge.
         corner_count: number of corners.
+        four_sided: whether the edges are end 0, end 1, side 0 and side 1, and the corners those along either end.
     """
 
     @property
@@ -36,6 +43,9 @@ class PanelFeature(Protocol):
 
     @property
     def cuts(self) -> Cuts: ...  # noqa: D102
+
+    @property
+    def cut_numbers(self) -> IntArray: ...  # noqa: D102
 
     @property
     def anchor(self) -> int: ...  # noqa: D102
@@ -55,16 +65,15 @@ class PanelFeature(Protocol):
     @property
     def corner_count(self) -> int: ...  # noqa: D102
 
+    @property
+    def four_sided(self) -> bool: ...  # noqa: D102
+
     def in_units(self, length: float) -> Self:
         """The same feature with lengths counted in units of `length` mm."""
         ...
 
     def patch_slice(self, patch: int) -> slice:
-        """Where the numbers of one patch stand among `numbers`."""
-        ...
-
-    def cut_slice(self, end: int) -> slice:
-        """Where position, skew and tilt of one cut plane stand among `numbers`."""
+        """Where the numbers of one patch stand among `numbers`; empty where it has none of its own."""
         ...
 
     def expand(self, unknowns: Array) -> Array:
@@ -91,6 +100,10 @@ class PanelFeature(Protocol):
         """The arc points (n, arcs, 3) of walked panels."""
         ...
 
+    def shapes(self, walked: Walk, placed: Placed) -> Sequence[Panel]:
+        """Walked panels in the coordinates of the reference's file, mm."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Rulings:
@@ -115,6 +128,7 @@ class Walk:
     Attributes:
         feature: the feature of all these panels.
         values: (panels, N) all numbers, the fixed ones included.
+        dimensions: those of the patches that have numbers of their own.
         anchor: the ruling in the middle of the anchor patch (R = 1).
         edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
         carriers: per patch the ruling that its radius is measured at (R = k).
@@ -123,6 +137,7 @@ class Walk:
 
     feature: PanelFeature
     values: Array
+    dimensions: tuple[Dimensions, ...]
     anchor: Rulings
     edges: Rulings
     carriers: Rulings

@@ -10,9 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.features.carrying import Frames, carry
 from cadpanel.features.cut_planes import carried, cut_plane_rates, cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
-from cadpanel.features.patches import Frames
+from cadpanel.features.patches import Dimensions
 from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
 from cadpanel.geometry.vectors import cross, dot
@@ -28,14 +29,13 @@ class _Step:
         self.frames = frames
         self.twist = twist
 
-    def carry(self, feature: PanelFeature, patch: int, values: Array, way: float) -> _Step:
-        numbers = feature.patch_slice(patch)
-        frames, own = feature.patches[patch].carry(self.frames, values[:, numbers], way)
+    def carry(self, feature: PanelFeature, patch: int, dimensions: Dimensions, way: float) -> _Step:
+        frames, own = carry(feature.patches[patch].kind, self.frames, dimensions.values, way)
         if self.twist is None:
             return _Step(frames, None)
         # The patch's numbers may already act on the frame that is carried on (the anchor's radius, say): they add.
         twist = self.twist.copy()
-        twist[:, :, numbers] += own
+        twist[:, :, feature.patch_slice(patch)] += own if dimensions.rates is None else own @ dimensions.rates
         return _Step(frames, twist)
 
 
@@ -47,25 +47,27 @@ def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
         values: (panels, N) all numbers of the feature.
         derivatives: whether twists are wanted.
     """
+    dimensions = tuple(patch.dimensions(values[:, feature.patch_slice(i)]) for i, patch in enumerate(feature.patches))
     start = _anchor(feature, values, derivatives)
     last = len(feature.patches) - 1
     edges: dict[int, _Step] = {}
     arcs: list[_Step] = []
     for side in (-1, 1):
-        step = start.carry(feature, feature.anchor, values, 0.5 * side)
+        step = start.carry(feature, feature.anchor, dimensions[feature.anchor], 0.5 * side)
         edges[feature.anchor + (side > 0)] = step
         patch = feature.anchor + side
         while 0 <= patch <= last:
-            step = step.carry(feature, patch, values, float(side))
+            step = step.carry(feature, patch, dimensions[patch], float(side))
             edges[patch + (side > 0)] = step
             patch += side
     carriers = [start if i == feature.anchor else edges[i if i > feature.anchor else i + 1] for i in range(last + 1)]
     for i, patch_spec in enumerate(feature.patches):
         if patch_spec.kind != "plane":
-            arcs += [_inside(feature, i, carriers[i], values, share) for share in ARC_SHARES]
+            arcs += [_inside(feature, i, carriers[i], dimensions[i], share) for share in ARC_SHARES]
     return Walk(
         feature,
         values,
+        dimensions,
         _stack([start], start),
         _stack([edges[i] for i in range(last + 2)], start),
         _stack(carriers, start),
@@ -73,10 +75,10 @@ def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
     )
 
 
-def _inside(feature: PanelFeature, patch: int, carrier: _Step, values: Array, share: float) -> _Step:
+def _inside(feature: PanelFeature, patch: int, carrier: _Step, dimensions: Dimensions, share: float) -> _Step:
     if patch == feature.anchor:
-        return carrier.carry(feature, patch, values, share - 0.5)
-    return carrier.carry(feature, patch, values, share if patch > feature.anchor else share - 1.0)
+        return carrier.carry(feature, patch, dimensions, share - 0.5)
+    return carrier.carry(feature, patch, dimensions, share if patch > feature.anchor else share - 1.0)
 
 
 def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
@@ -145,11 +147,10 @@ def _moved(walked: Walk, rulings: Rulings, part: slice, m: Array, position: Arra
     moved = point_velocity(rulings.twist[part, None], position)
     along = -(m[:, :, None, None] @ moved)[..., 0, :]
     if not carried(walked.feature):
-        for end in (0, 1):
-            at = walked.feature.cut_slice(end).start
-            along[:, end, :, at] += 1.0
-            along[:, end, :, at + 1] -= position[:, end, :, 0]
-            along[:, end, :, at + 2] -= position[:, end, :, 2]
+        for end, (place, skew, tilt) in enumerate(walked.feature.cut_numbers.tolist()):
+            along[:, end, :, place] += 1.0
+            along[:, end, :, skew] -= position[:, end, :, 0]
+            along[:, end, :, tilt] -= position[:, end, :, 2]
     along /= rate[..., None]
     moved += rulings.t[part, None, :, :, None] * along[..., None, :]
     return moved

@@ -6,16 +6,17 @@ through infinity on its way from a convex patch to a concave one.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
-from cadpanel.features.numbers import Number
+from cadpanel.features.patches import DIMENSIONS, Kind, Patch
+from cadpanel.features.rulings import PanelFeature
+from cadpanel.terms.limits.catalogue import LIMITS
 
-# A flange keeps this width in its middle, mm.
-LEAST_WIDTH = 1.0
 # Cones open by no more than this, radians: sheet is rolled to cones, not to discs.
 STEEPEST = np.radians(30.0)
 # Radius and sweep of a patch keep this share of what they start with, and a sweep stays below half a turn.
@@ -38,29 +39,64 @@ def natural_bounds(layout: Layout, starts: Sequence[Array], length: float) -> tu
     """
     lower, upper = np.full(starts[0].shape, -np.inf), np.full(starts[0].shape, np.inf)
     for group in layout.groups:
-        for column, index in enumerate(group.feature.free):
-            number = group.feature.numbers[index]
-            begun = np.array([start[group.panels, column] for start in starts])
-            low, high = _natural(number, begun, length, flat=not any(group.feature.curved))
-            lower[group.panels, column] = number.lower if np.isfinite(number.lower) else np.minimum(low, number.upper)
-            upper[group.panels, column] = number.upper if np.isfinite(number.upper) else np.maximum(high, number.lower)
+        feature = group.feature
+        low, high = _natural(feature, [_expanded(feature, start[group.panels]) for start in starts], length)
+        for column, index in enumerate(feature.free):
+            number = feature.numbers[index]
+            least, most = low[:, index], high[:, index]
+            lower[group.panels, column] = number.lower if np.isfinite(number.lower) else np.minimum(least, number.upper)
+            upper[group.panels, column] = number.upper if np.isfinite(number.upper) else np.maximum(most, number.lower)
     return lower, upper
 
 
-def _natural(number: Number, begun: Array, length: float, *, flat: bool) -> tuple[Array, Array]:
-    """(n,) bounds of one number of n panels, from what it starts with (starts, n)."""
-    what = number.name.rpartition(" ")[2]
-    free = np.full(begun.shape[1], np.inf)
-    if what == "width":
-        return np.full(begun.shape[1], LEAST_WIDTH / length), free
-    if what == "half_angle":
-        return np.full(begun.shape[1], -STEEPEST), np.full(begun.shape[1], STEEPEST)
-    if what in ("radius", "sweep"):
-        sign = np.sign(begun[0])
-        least = LEAST_SHARE * np.abs(begun).min(axis=0)
-        most = WIDEST_SWEEP if what == "sweep" else LARGEST_RADIUS / length
-        return np.where(sign < 0.0, -most, least), np.where(sign < 0.0, -least, most)
-    if number.name.startswith("cut") and what in ("skew", "tilt"):
-        most = np.full(begun.shape[1], MOST_FLAT_SLOPE if flat else MOST_SLOPE)
-        return -most, most
-    return -free, free
+def _expanded(feature: PanelFeature, unknowns: Array) -> Array:
+    return feature.expand(unknowns[:, : len(feature.free)])
+
+
+def _natural(feature: PanelFeature, begun: Sequence[Array], length: float) -> tuple[Array, Array]:
+    """(n, numbers) bounds of all numbers of n panels, from arrays (n, numbers) that they start with."""
+    upper = np.full(begun[0].shape, np.inf)
+    lower = -upper
+    for i, patch in enumerate(feature.patches):
+        own = feature.patch_slice(i)
+        if own.start < own.stop:
+            dimensions = np.array([patch.dimensions(start[:, own]).values for start in begun])
+            lower[:, own], upper[:, own] = _told(patch, *_of_dimensions(patch.kind, dimensions, length))
+    slopes = feature.cut_numbers[:, 1:].reshape(-1)
+    upper[:, slopes] = MOST_SLOPE if any(feature.curved) else MOST_FLAT_SLOPE
+    lower[:, slopes] = -upper[:, slopes]
+    return lower, upper
+
+
+def _of_dimensions(kind: Kind, begun: Array, length: float) -> tuple[Array, Array]:
+    """(n, d) bounds of what patches measure, from what they start with (starts, n, d)."""
+    upper = np.full(begun.shape[1:], np.inf)
+    lower = -upper
+    for column, what in enumerate(DIMENSIONS[kind]):
+        least = [bound for limit in LIMITS if (bound := limit.bound(what)) is not None]
+        if least:
+            lower[:, column] = max(least) / length
+        if what == "half_angle":
+            lower[:, column], upper[:, column] = -STEEPEST, STEEPEST
+        if what in ("radius", "sweep"):
+            concave = begun[0, :, column] < 0.0
+            smallest = LEAST_SHARE * np.abs(begun[:, :, column]).min(axis=0)
+            most = WIDEST_SWEEP if what == "sweep" else LARGEST_RADIUS / length
+            lower[:, column] = np.where(concave, -most, smallest)
+            upper[:, column] = np.where(concave, -smallest, most)
+    return lower, upper
+
+
+def _told(patch: Patch, lower: Array, upper: Array) -> tuple[Array, Array]:
+    """(n, numbers) the least and greatest numbers of patches at the corners of a box of dimensions (n, d).
+
+    Where each number tells of one dimension, that is the box itself; where one tells of several, a box about it.
+    """
+    sides = np.stack([lower, upper])
+    columns = np.arange(lower.shape[1])
+    with np.errstate(all="ignore"):
+        corners = np.array(
+            [patch.numbers_for(sides[which, :, columns].T) for which in itertools.product((0, 1), repeat=len(columns))]
+        )
+    unknown = np.isnan(corners)
+    return np.where(unknown, -np.inf, corners).min(axis=0), np.where(unknown, np.inf, corners).max(axis=0)

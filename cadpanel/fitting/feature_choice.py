@@ -15,8 +15,7 @@ from cadpanel.fitting.methods.local import Local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.chain_checks import check_skin
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.suitability import check_fold
 
@@ -133,10 +132,10 @@ class Choice:
         return for_corners(CHEAPEST_FIRST[place], tilt=self._settings.tilt)(len(panel.edges))
 
 
-def can_be_built(shape: AnyShape) -> bool:
+def can_be_built(shape: Panel) -> bool:
     """Whether an exact skin can be built of a panel."""
     try:
-        check_skin(shape)
+        shape.check()
     except PanelError:
         return False
     return True

@@ -6,11 +6,10 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
-from cadpanel.features.polygon import Polygon
-from cadpanel.fitting.start.chains import Start
+from cadpanel.fitting.start.begin import Start
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.strip import strip_of
-from cadpanel.terms.limits.corner_drift import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.state import State
 
 
@@ -24,7 +23,7 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
     for i, panel in enumerate(reference.panels):
         feature, axes = layout.feature_of[i], begin.axes[i]
         count = feature.corner_count
-        if isinstance(feature, Polygon):
+        if not feature.four_sided:
             corners[i, :count] = (panel.corners.reshape(-1, 3) - begin.origins[i]) @ axes / begin.length
             across.set(i, np.arange(count), np.broadcast_to(np.eye(3), (count, 3, 3)))
             continue

@@ -13,23 +13,22 @@ from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import allowed_patches, check_blends, stretches
-from cadpanel.fitting.bounds import LEAST_WIDTH, natural_bounds
+from cadpanel.fitting.bounds import natural_bounds
 from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.start.chains import Start, start
+from cadpanel.fitting.start.begin import Start, start
 from cadpanel.reference.model import Reference, Seam
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.edge_gap import MixedGap
-from cadpanel.terms.limits.corner_drift import DriftLimit, Outline
-from cadpanel.terms.limits.flange_width import WidthLimit
-from cadpanel.terms.limits.min_radius import RadiusLimit
+from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.outline import Outline
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import SeamBatch, batches
 from cadpanel.terms.state import State
-from cadpanel.terms.term import Term
+from cadpanel.terms.term import HeldTerm, Term
 
 SeamTerm = CornerGap | ArcGap | MixedGap
 
@@ -94,24 +93,9 @@ class Problem:
             terms.append(kind(batch, self.place, self.layout, tolerance=tolerance / length))
         return terms
 
-    def drift_limits(self, settings: FitSettings, margin: float) -> list[DriftLimit]:
-        """Corners held within the settings' shares of the panels' lengths, less a relative margin."""
-        along = (1.0 - margin) * settings.drift_along * self.lengths
-        across = (1.0 - margin) * settings.drift_across * self.lengths
-        return [
-            DriftLimit(self.outline, along, across=False),
-            DriftLimit(self.outline, np.where(self.outline.sided, across, along), across=True),
-        ]
-
-    def shop_limits(self, settings: FitSettings) -> list[RadiusLimit | WidthLimit]:
-        """What can be rolled and folded: least radii of cones and cylinders, least widths of the flanges."""
-        terms: list[RadiusLimit | WidthLimit] = []
-        for place, group in enumerate(self.layout.groups):
-            if any(group.feature.curved):
-                terms.append(RadiusLimit(group, place, self.panels, settings.min_radius / self.place.length))
-                if not all(group.feature.curved):
-                    terms.append(WidthLimit(group, place, self.panels, LEAST_WIDTH / self.place.length))
-        return terms
+    def limits(self, settings: FitSettings, margin: float = 0.0) -> list[HeldTerm]:
+        """What panels may not do however wide the gaps are, less a relative margin."""
+        return [term for limit in LIMITS for term in limit.held(self, settings.allowed, margin)]
 
     def take(self, panels: IntArray) -> Problem:
         """The same problem for some of its panels, without their seams."""
@@ -134,7 +118,7 @@ class Problem:
 
     def free_terms(self, settings: FitSettings) -> list[Term]:
         """Deviation, the weak pull of corners to the outline, and what can be made: what a panel wants by itself."""
-        return [self.deviation, *self.drift_limits(FitSettings(), 0.0), *self.shop_limits(settings)]
+        return [self.deviation, *self.limits(settings)]
 
     def placement_unknowns(self) -> BoolArray:
         """(panels, size) which unknowns move a panel or trim it: all but its curved patches' numbers."""

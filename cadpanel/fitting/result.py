@@ -8,10 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
+from cadpanel.terms.limits.catalogue import LIMITS
 
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
 Progress = Callable[[str, int, float], None]
@@ -27,8 +29,8 @@ class FitResult:
         shapes: the panels, in the order of the reference.
         measures: gaps, deviation and drift of this result.
         local, two_stage: the same measures for the methods that it is held against.
-        tolerance_met: whether every gap is within the tolerance, every drift within its limit and, where features are
-            chosen automatically, every deviation within the largest; with weights gaps and drifts have none to miss.
+        tolerance_met: whether every gap is within the tolerance, every limit kept and, where features are
+            chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
@@ -37,7 +39,7 @@ class FitResult:
 
     reference: Reference
     settings: FitSettings
-    shapes: tuple[AnyShape, ...]
+    shapes: tuple[Panel, ...]
     measures: Measures
     local: Measures
     two_stage: Measures
@@ -48,7 +50,7 @@ class FitResult:
     stopped: Stop
     seconds: float
 
-    def shape(self, name: str) -> AnyShape:
+    def shape(self, name: str) -> Panel:
         """The panel of that name.
 
         Raises:
@@ -86,17 +88,13 @@ class FitResult:
                 f"the gap tolerance of {tolerance:g} mm is not met: the seam between '{a}' and '{b}' stays open by "
                 f"{gaps[worst]:.2f} mm"
             )
-        limits = (
-            ("along", m.drift_along, self.settings.drift_along),
-            ("across", m.drift_across, self.settings.drift_across),
-        )
-        way, drift, limit = max(limits, key=lambda kind: float((kind[1] / m.lengths).max()) / kind[2])
-        panel = int(np.argmax(drift / m.lengths))
-        if drift[panel] > limit * m.lengths[panel]:
-            missed.append(
-                f"the drift limits are not met: panel '{self.reference.panels[panel].name}' leaves its outline by "
-                f"{drift[panel]:.1f} mm {way} its free edges, where {limit * m.lengths[panel]:.1f} mm are allowed"
-            )
+        limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
+        panel = int(np.argmax(limit.excess(m, most)))
+        if not limit.kept(m, most)[panel]:
+            value, length = float(limit.measure(m)[panel]), float(m.lengths[panel])
+            missed.append(limit.missed(self.reference.panels[panel].name, value, most, length))
+        else:
+            limit = LIMITS[0]  # which gives way first
         # Where both are missed by far, no wider limit helps: the feature cannot follow.
-        advice = ("choose another feature, " if len(missed) > 1 else "") + "allow a larger gap or more drift"
+        advice = ("choose another feature, " if len(missed) > 1 else "") + f"allow a larger gap or {limit.remedy}"
         return f"{', and '.join(missed)}; {advice}"

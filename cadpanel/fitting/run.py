@@ -11,7 +11,7 @@ from cadpanel.arrays import IntArray
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.measures.verdict import keeps_limits
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
 from cadpanel.fitting.methods.catalogue import LOCAL, TWO_STAGE, method_for
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
@@ -90,12 +90,11 @@ def _fit(
     made = {LOCAL: local, TWO_STAGE: staged}
     method = method_for(how)
     chosen = made[method] if method in made else method.fit(posed, [local.unknowns], how, tell)
-    shapes = panel_shapes(posed, chosen.unknowns)
-    measures = measure(shapes, reference)
+    measures = measure(panel_shapes(posed, chosen.unknowns), reference)
     return FitResult(
         reference=reference,
         settings=how,
-        shapes=shapes,
+        shapes=measures.shapes,
         measures=measures,
         local=measure(panel_shapes(posed, local.unknowns), reference),
         two_stage=measure(panel_shapes(posed, staged.unknowns), reference),
@@ -114,7 +113,8 @@ def _offenders(result: FitResult) -> IntArray:
     beyond = np.zeros(len(m.lengths), dtype=bool)
     if how.max_deviation is not None:
         beyond |= m.max_deviation > how.max_deviation
-    beyond |= (m.drift_along > how.drift_along * m.lengths) | (m.drift_across > how.drift_across * m.lengths)
+    for limit, allowed in limits_of(how):
+        beyond |= ~limit.kept(m, allowed)
     for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
         beyond[list(seam.panels)] |= gap > how.gap_tolerance
     return np.flatnonzero(beyond)

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Integral, Real
-from typing import Literal, get_args
+from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt, for_corners
-from cadpanel.features.feature import Feature
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
+from cadpanel.setting import Option, Range, check_ranges, require, setting
+from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
+from cadpanel.terms.limits.limit import limit_setting
+from cadpanel.terms.limits.min_radius import MinRadius
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""
 
 Method = Literal["local", "two_stage", "concurrent"]
+
+_WEIGHTS = ("gap", "deviation", "drift")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,12 +44,33 @@ class Weights:
         Raises:
             SettingsError: a weight is not a number of 0 or more, or no deviation or drift is left to fit.
         """
-        for name in ("gap", "deviation", "drift"):
+        for name in _WEIGHTS:
             require(name + " weight", getattr(self, name), least=0.0, most=LARGEST_WEIGHT)
         if self.deviation == 0.0 or self.drift == 0.0:
             raise SettingsError("the weights of deviation and drift must be above 0, or panels may wander off")
         for name in ("deviation", "drift"):
             require(name + " weight", getattr(self, name), least=SMALLEST_WEIGHT, most=LARGEST_WEIGHT)
+
+    @staticmethod
+    def parse(text: str) -> Weights:
+        """Weights from "gap=1,deviation=1,drift=1e-4", in any order; those left out keep their defaults.
+
+        Raises:
+            SettingsError: the text is not of that form.
+        """
+        found: dict[str, float] = {}
+        for part in text.split(","):
+            name, equals, value = (piece.strip() for piece in part.partition("="))
+            if not equals or name not in _WEIGHTS or name in found:
+                raise SettingsError(
+                    f"--weights cannot use '{part.strip()}': write each of gap, deviation and drift at most once, "
+                    "like gap=1,deviation=1,drift=1e-4."
+                )
+            try:
+                found[name] = float(value)
+            except ValueError as error:
+                raise SettingsError(f"--weights needs a number for {name}, not '{value}'.") from error
+        return Weights(**found)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,28 +84,67 @@ class FitSettings:
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
         method: "local", "two_stage" or "concurrent".
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams.
+        weights: the paper's objective instead of a tolerance, or None.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
         blend: which stretch across the panels becomes their curved patches, where that is not to be told by the
             surface's normals: "410-540" (mm from side 0), "40-55%", "NW-03=410-540" for one panel, or several of these.
         min_radius: mm, the tightest that the shop can roll; no cone or cylinder gets tighter anywhere.
-        weights: the paper's objective instead of a tolerance, or None.
         restarts: further starts from perturbed local fits; the best result counts.
         seed: of the perturbations.
     """
 
-    feature: str | Feature = "plane-cone-plane"
-    max_deviation: float | None = None
-    tilt: Tilt = "free"
-    method: Method = "concurrent"
-    gap_tolerance: float = 1.0
-    drift_along: float = 0.05
-    drift_across: float = 0.02
-    min_radius: float = 10.0
-    blend: tuple[Blend, ...] = ()
-    weights: Weights | None = None
-    restarts: int = 0
-    seed: int = 0
+    feature: str | PanelFeature = setting(
+        "plane-cone-plane",
+        option=Option(takes=str, metavar="NAME", help="Shape of a panel, one of those that 'cadpanel features' lists."),
+    )
+    max_deviation: float | None = setting(
+        None,
+        within=Range(what="largest deviation", least=1e-3, unit=" mm", empty=True),
+        option=Option(metavar="MM", help="With --feature auto: how far a panel may lie from the reference anywhere."),
+    )
+    tilt: Tilt = setting(
+        "free", option=Option(help="May the planes that cut the ends tilt into a mitre, or stand upright?")
+    )
+    method: Method = setting("concurrent", option=Option(help="Each panel alone; then moved about; or all at once."))
+    gap_tolerance: float = setting(
+        1.0,
+        within=Range(what="gap tolerance", least=1e-3, unit=" mm"),
+        option=Option(
+            metavar="MM", help="Largest gap between neighbours, along whole seams; 1 if not given.", told=False
+        ),
+    )
+    weights: Weights | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: Weights.parse(text),
+            metavar="gap=W,deviation=W,drift=W",
+            help="Weigh squares against each other instead of holding a gap tolerance.",
+        ),
+    )
+    drift_along: float = limit_setting(DriftAlong)
+    drift_across: float = limit_setting(DriftAcross)
+    min_radius: float = limit_setting(MinRadius)
+    blend: tuple[Blend, ...] = setting(
+        (),
+        option=Option(
+            takes=list[str],
+            metavar="[PANEL=]FROM-TO[%]",
+            help="Stretch across the panels, mm from side 0, to become the bend; may be repeated, for one panel each.",
+            told=False,
+        ),
+    )
+    restarts: int = setting(
+        0,
+        within=Range(what="number of restarts", least=0, most=1000, whole=True),
+        option=Option(help="Further starts from shaken panels; the best counts."),
+    )
+    seed: int = setting(
+        0,
+        within=Range(what="seed", least=0, whole=True),
+        option=Option(help="Of the random numbers that shake them."),
+    )
 
     def __post_init__(self) -> None:
         """Check every setting.
@@ -88,36 +153,35 @@ class FitSettings:
             SettingsError: a setting is out of range; the message says which and what it may be.
         """
         named: object = self.feature
-        if not isinstance(named, str | Feature):
+        if not isinstance(named, str | PanelFeature):
             raise SettingsError(f"a feature is named, or is a Feature, not {named!r}")
-        if not isinstance(self.feature, Feature) and self.feature != AUTO:
+        if isinstance(self.feature, str) and self.feature != AUTO:
             for_corners(self.feature, tilt=self.tilt)
         if self.tilt not in get_args(Tilt):
             raise SettingsError(f"tilt must be 'free' or 'fixed', not '{self.tilt}'")
-        if isinstance(self.feature, Feature) and self.tilt == "fixed":
+        if not isinstance(self.feature, str) and self.tilt == "fixed":
             raise SettingsError("a composed feature says itself how its ends are cut; leave the tilt out")
         if self.method not in get_args(Method):
             raise SettingsError(f"there is no method '{self.method}'; choose one of: {', '.join(get_args(Method))}")
-        if self.max_deviation is not None:
-            require("largest deviation", self.max_deviation, least=1e-3, unit=" mm")
+        check_ranges(self)
         if (self.feature == AUTO) != (self.max_deviation is not None):
             raise SettingsError(
                 f"the feature '{AUTO}' and a largest deviation go together: the first is chosen by the second"
             )
-        require("gap tolerance", self.gap_tolerance, least=1e-3, unit=" mm")
-        require("drift along the strip", self.drift_along, least=1e-4, most=0.5)
-        require("drift across the free edges", self.drift_across, least=1e-4, most=0.5)
-        require("least radius", self.min_radius, least=0.1, unit=" mm")
-        if isinstance(self.feature, Feature):
-            _require_rollable(self.feature, self.min_radius)
-        require_whole("number of restarts", self.restarts, least=0, most=1000)
-        require_whole("seed", self.seed, least=0)
+        if not isinstance(self.feature, str):
+            for limit in LIMITS:
+                limit.check_feature(self.feature, limit.allowed(self))
         _require_weights(self.weights)
         object.__setattr__(self, "blend", blends_of(self.blend))
         if self.blend and self.automatic:
             raise SettingsError(f"with the feature '{AUTO}' it is not known which panels have a blend: name a feature")
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
+
+    @property
+    def allowed(self) -> dict[str, float]:
+        """Every limit by its name, mm or shares of a panel's length; also those that are no setting."""
+        return {limit.name: limit.allowed(self) for limit in LIMITS}
 
     @property
     def automatic(self) -> bool:
@@ -127,52 +191,32 @@ class FitSettings:
     @property
     def feature_name(self) -> str:
         """The feature as reports call it."""
-        return self.feature.name if isinstance(self.feature, Feature) else self.feature
+        return self.feature if isinstance(self.feature, str) else self.feature.name
 
     def feature_for(self, corners: int) -> PanelFeature:
         """The feature of a panel with so many corners, where all panels have the same."""
-        if isinstance(self.feature, Feature):
-            return self.feature
-        return for_corners(self.feature, tilt=self.tilt)(corners)
-
-
-def require_whole(what: str, value: object, *, least: int, most: float = math.inf) -> None:
-    """Refuse a number outside [least, most], or one that is no whole number.
-
-    Raises:
-        SettingsError: with one sentence that names the setting and its range.
-    """
-    if not isinstance(value, Integral):
-        raise SettingsError(f"the {what} must be a whole number, not {value!r}")
-    require(what, value, least=least, most=most)
-
-
-def require(what: str, value: object, *, least: float, most: float = math.inf, unit: str = "") -> None:
-    """Refuse a number outside [least, most], or none at all.
-
-    Raises:
-        SettingsError: with one sentence that names the setting and its range.
-    """
-    if not isinstance(value, Real):
-        raise SettingsError(f"the {what} must be a number, not {value!r}")
-    number = float(value)
-    if not math.isfinite(number) or not least <= number <= most:
-        span = f"at least {least:g}{unit}" if math.isinf(most) else f"between {least:g}{unit} and {most:g}{unit}"
-        raise SettingsError(f"the {what} must be {span}, not {number:g}{unit}")
-
-
-def _require_rollable(feature: Feature, min_radius: float) -> None:
-    """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
-    for number in feature.numbers:
-        if number.name.endswith(": radius"):
-            given = (number.fixed,) if number.fixed is not None else (number.lower, number.upper)
-            if max(abs(value) for value in given) < min_radius:
-                raise SettingsError(
-                    f"the radius of {number.name.partition(':')[0]} of '{feature.name}' is tighter than the least "
-                    f"radius of {min_radius:g} mm: ask for a larger one, or allow a tighter one"
-                )
+        if isinstance(self.feature, str):
+            return for_corners(self.feature, tilt=self.tilt)(corners)
+        return self.feature
 
 
 def _require_weights(value: object) -> None:
     if not isinstance(value, Weights | None):
         raise SettingsError(f"the weights must be Weights or None, not {value!r}")
+
+
+class FitKeywords(TypedDict, total=False):
+    """The fields of `FitSettings` as keywords, which type checkers want written out; a test holds the two alike."""
+
+    feature: str | PanelFeature
+    max_deviation: float | None
+    tilt: Tilt
+    method: Method
+    gap_tolerance: float
+    weights: Weights | None
+    drift_along: float
+    drift_across: float
+    min_radius: float
+    blend: str | Blend | Sequence[str | Blend]
+    restarts: int
+    seed: int

@@ -7,21 +7,16 @@ linear in the depth, so what holds on both holds inside. Millimetres and radians
 from __future__ import annotations
 
 import math
-from numbers import Real
-from typing import Literal, TypeVar, get_args
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_cone, radius_range
-from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH, THICKEST_SHEET, THINNEST_SHEET
-from cadpanel.geometry.polygon_checks import check_polygon
+from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
+from cadpanel.geometry.panel import Chain
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.self_crossing import crosses_itself
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
-
-Shape = TypeVar("Shape", PanelShape, PolygonShape)
-SkinSide = Literal["outer", "inner"]
 
 SMALLEST_RADIUS = 0.1
 """Distance from the axis, mm, below which a skin counts as having reached the apex."""
@@ -40,50 +35,30 @@ POINT_TOLERANCE = 1e-8
 _ENDS = ("start", "far end")
 
 
-def check_skin(shape: AnyShape) -> None:
-    """Refuse a skin that cannot be built exactly.
+def check_chain(shape: Chain) -> None:
+    """Refuse a chain whose skin cannot be built exactly.
 
     Raises:
         PanelError: with one reason: not finite, rulings that disagree with the patches, a ruling parallel to a cut
             plane, an apex inside, a section that is no ellipse, cut planes that cross inside, a fold inside out.
     """
-    if isinstance(shape, PolygonShape):
-        check_polygon(shape)
-        return
     _check_numbers(shape)
     _check_walk(shape)
     _check_face(shape, "")
 
 
-def check_buildable(shape: AnyShape, thickness: float, skin_side: SkinSide = "outer") -> None:
-    """Refuse a panel whose sheet of `thickness` mm cannot be built; "outer": the sheet lies at -n, "inner": at +n.
+def check_chain_sheet(shape: Chain, away: Chain, thickness: float) -> None:
+    """Refuse a sheet of `thickness` mm between a chain that passes `check_chain` and its other face `away`.
 
     Raises:
-        PanelError: for the reasons of `check_skin`, on either face of the sheet, or a sheet that is thicker than its
-            inner radius allows.
+        PanelError: for the reasons of `check_chain` on the other face, or a sheet that is thicker than its inner radius
+            allows.
     """
-    given: object = thickness
-    if isinstance(given, bool) or not isinstance(given, Real) or not THINNEST_SHEET <= thickness <= THICKEST_SHEET:
-        raise PanelError(
-            shape.name,
-            f"the sheet thickness is {thickness!r} mm; give a number from {THINNEST_SHEET:g} to {THICKEST_SHEET:g}.",
-        )
-    if skin_side not in get_args(SkinSide):
-        raise PanelError(shape.name, f"the skin side is '{skin_side}'; give {' or '.join(get_args(SkinSide))}.")
-    check_skin(shape)
-    if isinstance(shape, PolygonShape):
-        return
-    away = other_face(shape, thickness, skin_side)
     _check_thickness(shape, away, thickness)
     _check_face(away, f" on the other face of the {thickness:g} mm sheet")
 
 
-def other_face(shape: Shape, thickness: float, skin_side: SkinSide) -> Shape:
-    """The parallel skin on the far face of the sheet."""
-    return shape.offset(-thickness if skin_side == "outer" else thickness)
-
-
-def _check_numbers(shape: PanelShape) -> None:
+def _check_numbers(shape: Chain) -> None:
     arrays = (shape.points, shape.directions, shape.normals, shape.cut_points, shape.cut_normals)
     numbers = [number for patch in shape.patches if isinstance(patch, ConePatch) for number in _numbers(patch)]
     if not (all(np.isfinite(array).all() for array in arrays) and np.isfinite(numbers).all()):
@@ -101,7 +76,7 @@ def _numbers(patch: ConePatch) -> tuple[float, float, float]:
     return patch.radius, patch.half_angle, patch.sweep
 
 
-def _check_walk(shape: PanelShape) -> None:
+def _check_walk(shape: Chain) -> None:
     """Each patch must carry its ruling to the next one, turning the way the walk goes."""
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):
@@ -153,7 +128,7 @@ def _check_cone_numbers(name: str, index: int, patch: ConePatch) -> None:
         )
 
 
-def carried_ruling(shape: PanelShape, index: int) -> tuple[Array, Array, Array]:
+def carried_ruling(shape: Chain, index: int) -> tuple[Array, Array, Array]:
     """Point, direction and normal to which patch `index` carries its first ruling (a plane: that ruling itself)."""
     point, direction, normal = shape.points[index], shape.directions[index], shape.normals[index]
     patch = shape.patches[index]
@@ -166,7 +141,7 @@ def carried_ruling(shape: PanelShape, index: int) -> tuple[Array, Array, Array]:
     return turned, cosine * frame.axis + sine * radial, cosine * radial - sine * frame.axis
 
 
-def _check_thickness(shape: PanelShape, away: PanelShape, thickness: float) -> None:
+def _check_thickness(shape: Chain, away: Chain, thickness: float) -> None:
     """The two faces of the sheet must lie on the same side of every axis, with room for the inner one."""
     for index, (near, far) in enumerate(zip(shape.patches, away.patches, strict=True)):
         if not (isinstance(near, ConePatch) and isinstance(far, ConePatch)):
@@ -182,7 +157,7 @@ def _check_thickness(shape: PanelShape, away: PanelShape, thickness: float) -> N
             )
 
 
-def _radii(shape: PanelShape, index: int, patch: ConePatch) -> list[float]:
+def _radii(shape: Chain, index: int, patch: ConePatch) -> list[float]:
     """Smallest distance from the axis at either end, with the sign that the patch should have: negative beyond 0."""
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     sign = math.copysign(1.0, patch.radius)
@@ -190,7 +165,7 @@ def _radii(shape: PanelShape, index: int, patch: ConePatch) -> list[float]:
     return [min(sign * radius for radius in radius_range(cut, patch.sweep)) for cut in cuts]
 
 
-def _check_face(shape: PanelShape, where: str) -> None:
+def _check_face(shape: Chain, where: str) -> None:
     """Everything that depends on the trimmed face: cuts, apex, lengths and widths."""
     _check_rulings(shape, where)
     corners = shape.corners()
@@ -226,7 +201,7 @@ def _crossing_cuts(length: float, at: str, where: str) -> str:
     )
 
 
-def _check_rulings(shape: PanelShape, where: str) -> None:
+def _check_rulings(shape: Chain, where: str) -> None:
     cosines = np.einsum("rx,ex->er", shape.directions, shape.cut_normals)
     if cosines.min() < SMALLEST_CUT_COSINE:
         end, ruling = np.unravel_index(int(cosines.argmin()), cosines.shape)
@@ -239,7 +214,7 @@ def _check_rulings(shape: PanelShape, where: str) -> None:
         )
 
 
-def _check_cone(shape: PanelShape, index: int, patch: ConePatch, where: str) -> None:
+def _check_cone(shape: Chain, index: int, patch: ConePatch, where: str) -> None:
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     cuts = []
     for end in range(2):
@@ -274,7 +249,7 @@ def _no_ellipse(index: int, end: int, eccentricity: float, where: str) -> str:
     )
 
 
-def _check_flange(shape: PanelShape, index: int, corners: Array, where: str) -> None:
+def _check_flange(shape: Chain, index: int, corners: Array, where: str) -> None:
     """Both corners of ruling i + 1 must lie on the +b side of ruling i, and those of ruling i on the -b side."""
     across = corners[:, index + 1] - corners[:, index]
     binormals = shape.binormals()[index : index + 2]

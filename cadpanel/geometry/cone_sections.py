@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
 
 

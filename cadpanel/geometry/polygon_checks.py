@@ -7,20 +7,20 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
-from cadpanel.geometry.shape import PolygonShape
+from cadpanel.geometry.panel import Outlined
 from cadpanel.geometry.vectors import cross
 
 FLATNESS = 1e-7
 """Farthest corner from the plane, mm."""
 
 
-def polygon_area(shape: PolygonShape) -> float:
+def polygon_area(shape: Outlined) -> float:
     """Area inside the outline, mm2; negative where it runs clockwise about the normal."""
     corners = shape.outline - shape.outline[0]
     return 0.5 * float(cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0) @ shape.normal)
 
 
-def check_polygon(shape: PolygonShape) -> None:
+def check_polygon(shape: Outlined) -> None:
     """Refuse a polygon that cannot be built exactly.
 
     Raises:
@@ -50,7 +50,7 @@ def check_polygon(shape: PolygonShape) -> None:
         raise PanelError(name, "its outline crosses itself or is turned inside out; anchor its corners more strongly.")
 
 
-def _crosses(shape: PolygonShape) -> bool:
+def _crosses(shape: Outlined) -> bool:
     """Whether two edges that are not neighbours meet."""
     start = shape.outline
     stop = np.roll(start, -1, axis=0)

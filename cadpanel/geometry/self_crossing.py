@@ -6,14 +6,15 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.panel import Chain
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
 
 ARC_POINTS = 33
 """Points by which an arc is stood in for: within 1e-3 of its radius even at half a turn."""
 
 
-def end_polyline(shape: PanelShape, end: int, arc_points: int = ARC_POINTS) -> Array:
+def end_polyline(shape: Chain, end: int, arc_points: int = ARC_POINTS) -> Array:
     """(m, 3) the end curve, line - conic - line, as points from the first ruling to the last, mm."""
     corners = shape.corners()[end]
     pieces = [corners[:1]]
@@ -26,7 +27,7 @@ def end_polyline(shape: PanelShape, end: int, arc_points: int = ARC_POINTS) -> A
     return np.concatenate(pieces)
 
 
-def crosses_itself(shape: PanelShape) -> bool:
+def crosses_itself(shape: Chain) -> bool:
     """Whether either end curve meets itself, to the accuracy of its polyline. The shape must be trimmed properly."""
     return any(_polyline_crosses(end_polyline(shape, end), shape.cut_normals[end]) for end in range(2))
 

@@ -1,4 +1,4 @@
-"""One panel as plain arrays: rulings, the patches between them, and the planes that cut the ends.
+"""The two kinds of panels as plain arrays: patches between rulings, cut by planes at the ends, and polygons.
 
 Every length is in millimetres, every angle in radians. This is what the fit hands to the solids, the report and the
 measures; it knows nothing of unknowns, samples or CAD kernels.
@@ -7,44 +7,17 @@ measures; it knows nothing of unknowns, samples or CAD kernels.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.vectors import cross
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanePatch:
-    """A flat patch between two consecutive rulings; its plane is that of either ruling (they agree)."""
-
-    kind: Literal["plane"] = "plane"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ConePatch:
-    """A right circular cone (a cylinder where half_angle is 0) between ruling i and ruling i + 1.
-
-    With the frame (p, t, n) of ruling i, the axis passes through c = p - radius * n in the direction
-    a = cos(half_angle) * t - sin(half_angle) * n, and turning ruling i about that axis by `sweep` (right-handed) gives
-    ruling i + 1. The apex is never stored: it runs to infinity exactly where real panels lie.
-
-    Attributes:
-        radius: normal radius in mm, the distance from p to the axis measured along n, nowhere 0. Positive where the
-            patch is convex towards n, negative where it is concave.
-        half_angle: in radians, signed: positive where the cone widens along t (for a positive radius).
-        sweep: in radians, of the same sign as the radius, so that the walk goes towards b = t x n.
-        kind: "cylinder" where the feature asks for one (half_angle is then exactly 0), else "cone".
-    """
-
-    radius: float
-    half_angle: float
-    sweep: float
-    kind: Literal["cone", "cylinder"] = "cone"
-
-
-Patch = PlanePatch | ConePatch
+from cadpanel.geometry.chain_checks import check_chain, check_chain_sheet
+from cadpanel.geometry.panel import Straightened
+from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
+from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
+from cadpanel.geometry.vectors import cross, unit
+from cadpanel.geometry.volume import patch_areas
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,6 +56,14 @@ class PanelShape:
         corners: Array = self.points + (height / rate)[..., None] * self.directions
         return corners
 
+    def rulings(self) -> tuple[Array, Array, Array]:
+        """Points, directions and normals of its rulings, (k + 1, 3) each."""
+        return self.points, self.directions, self.normals
+
+    def cuts(self) -> tuple[Array, Array]:
+        """Points and normals of its two cut planes, (2, 3) each."""
+        return self.cut_points, self.cut_normals
+
     def binormals(self) -> Array:
         """(k + 1, 3) unit b = t x n, the way the walk goes."""
         return cross(self.directions, self.normals)
@@ -97,6 +78,31 @@ class PanelShape:
             for patch in self.patches
         )
         return replace(self, points=self.points + distance * self.normals, patches=patches)
+
+    @property
+    def four_sided(self) -> bool:
+        """It has two ends, in the cut planes, and two sides, along its first and last ruling."""
+        return True
+
+    def rewalked(self, points: Array, directions: Array, normals: Array, patches: tuple[Patch, ...]) -> PanelShape:
+        """The same panel along other rulings, over other patches."""
+        return replace(self, points=points, directions=directions, normals=normals, patches=patches)
+
+    def area(self) -> float:
+        """Area of the trimmed skin, mm2. The shape must be buildable."""
+        return float(sum(patch_areas(self)))
+
+    def straightened(self, smallest_half_angle: float = SMALLEST_HALF_ANGLE) -> Straightened[PanelShape]:
+        """The panel as it is built: a cone of at most `smallest_half_angle` is the cylinder that it has halfway."""
+        return straighten(self, smallest_half_angle)
+
+    def check(self) -> None:
+        """See `Panel.check`; refused are the faults that `check_chain` lists."""
+        check_chain(self)
+
+    def check_sheet(self, away: PanelShape, thickness: float) -> None:
+        """See `Panel.check_sheet`; refused is a sheet thicker than its inner radius allows, too."""
+        check_chain_sheet(self, away, thickness)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,9 +130,37 @@ class PolygonShape:
         """(1, n, 3) the outline as one row, mm."""
         return self.outline[None]
 
+    def rulings(self) -> tuple[Array, Array, Array]:
+        """Its first edge on its plane: point, direction and normal, (1, 3) each."""
+        return self.outline[:1], unit(self.outline[1:2] - self.outline[:1]), self.normal[None]
+
+    def cuts(self) -> tuple[Array, Array]:
+        """None: its edges lie square on it."""
+        return np.empty((0, 3)), np.empty((0, 3))
+
     def offset(self, distance: float) -> PolygonShape:
         """The parallel panel at `distance` mm along the normal (negative: inwards)."""
         return replace(self, outline=self.outline + distance * self.normal)
+
+    @property
+    def four_sided(self) -> bool:
+        """Its edges are alike: none is an end or a side."""
+        return False
+
+    def area(self) -> float:
+        """Area inside the outline, mm2."""
+        return polygon_area(self)
+
+    def straightened(self) -> Straightened[PolygonShape]:
+        """The panel itself: it has no cones."""
+        return Straightened(shape=self, patches=(), largest_move=0.0)
+
+    def check(self) -> None:
+        """See `Panel.check`; refused are the faults that `check_polygon` lists."""
+        check_polygon(self)
+
+    def check_sheet(self, away: PolygonShape, thickness: float) -> None:
+        """See `Panel.check_sheet`; a flat sheet may have any thickness."""
 
 
 def edge_corners(corners: Array, edge: str) -> Array:
@@ -149,7 +183,3 @@ def edge_corners(corners: Array, edge: str) -> Array:
         if what == "edge" and len(corners) == 1 and place < corners.shape[1]:
             return np.asarray(corners[0, [place, (place + 1) % corners.shape[1]]])
     raise ValueError(f"a panel with corners {corners.shape} has no edge '{edge}'")
-
-
-AnyShape = PanelShape | PolygonShape
-"""What a fit hands on: `corners()` in rows, along both ends of a chain or round a polygon."""

@@ -3,42 +3,31 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from dataclasses import replace
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame
-from cadpanel.geometry.shape import ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Chain, Panel, Straightened
+from cadpanel.geometry.patches import ConePatch
 
-Shape = TypeVar("Shape", PanelShape, PolygonShape)
+
+class ChainPanel(Chain, Panel, Protocol):
+    """A panel that is a chain."""
+
+
+StraightChain = TypeVar("StraightChain", bound=ChainPanel)
 SMALLEST_HALF_ANGLE = 5e-6
 """Radians; a cone of this half angle differs from the cylinder by 0.01 mm on 4 m."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Straightened(Generic[Shape]):
-    """A panel with its tiny half angles taken out.
-
-    Attributes:
-        shape: the panel as it is built.
-        patches: indices of the patches that became cylinders; empty if nothing was changed.
-        largest_move: how far the farthest corner moved, mm.
-    """
-
-    shape: Shape
-    patches: tuple[int, ...]
-    largest_move: float
-
-
-def straighten(shape: Shape, smallest_half_angle: float = SMALLEST_HALF_ANGLE) -> Straightened[Shape]:
+def straighten(shape: StraightChain, smallest_half_angle: float) -> Straightened[StraightChain]:
     """Replace every cone with 0 < |half_angle| <= `smallest_half_angle` by the cylinder that it has halfway along.
 
     The rulings up to the patch stay where they are; the rest of the walk follows the cylinder as a rigid body.
     """
-    if isinstance(shape, PolygonShape):
-        return Straightened(shape=shape, patches=(), largest_move=0.0)
     tiny = tuple(
         index
         for index, patch in enumerate(shape.patches)
@@ -51,7 +40,7 @@ def straighten(shape: Shape, smallest_half_angle: float = SMALLEST_HALF_ANGLE) -
     return Straightened(shape=straight, patches=tiny, largest_move=float(move))
 
 
-def _straighten_patch(shape: PanelShape, index: int) -> PanelShape:
+def _straighten_patch(shape: StraightChain, index: int) -> StraightChain:
     patch = shape.patches[index]
     assert isinstance(patch, ConePatch)
     direction, normal = shape.directions[index], shape.normals[index]
@@ -68,7 +57,7 @@ def _straighten_patch(shape: PanelShape, index: int) -> PanelShape:
     directions[rest] = directions[rest] @ rotation.T
     normals[rest] = normals[rest] @ rotation.T
     patches = (*shape.patches[:index], cylinder, *shape.patches[index + 1 :])
-    return replace(shape, points=points, directions=directions, normals=normals, patches=patches)
+    return shape.rewalked(points, directions, normals, patches)
 
 
 def _turn_about_axis(point: Array, direction: Array, normal: Array, patch: ConePatch) -> tuple[Array, Array]:

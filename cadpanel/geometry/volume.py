@@ -15,8 +15,8 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import ConeCut, axis_frame, cut_cone
-from cadpanel.geometry.polygon_checks import polygon_area
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Chain, Panel
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
 
 SWEEP_NODES = 48
@@ -24,14 +24,7 @@ _SWEEP_ABSCISSAE, _SWEEP_WEIGHTS = np.polynomial.legendre.leggauss(SWEEP_NODES)
 _SHEET_ABSCISSAE, _SHEET_WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
-def skin_area(shape: AnyShape) -> float:
-    """Area of the trimmed skin, mm2. The shape must be buildable."""
-    if isinstance(shape, PolygonShape):
-        return polygon_area(shape)
-    return float(sum(patch_areas(shape)))
-
-
-def patch_areas(shape: PanelShape) -> list[float]:
+def patch_areas(shape: Chain) -> list[float]:
     """Area of each trimmed patch in the order of the walk, mm2. The shape must be buildable."""
     corners = shape.corners()
     areas = []
@@ -43,14 +36,14 @@ def patch_areas(shape: PanelShape) -> list[float]:
     return areas
 
 
-def sheet_volume(shape: AnyShape, thickness: float, skin_side: Literal["outer", "inner"] = "outer") -> float:
+def sheet_volume(shape: Panel, thickness: float, skin_side: Literal["outer", "inner"] = "outer") -> float:
     """Volume in mm3 of the sheet of `thickness` mm on the side of the skin that `skin_side` leaves free.
 
     With "outer" the skin is the outer face and the sheet lies at -n, with "inner" at +n. The shape must be buildable.
     """
     away = -1.0 if skin_side == "outer" else 1.0
     depths = 0.5 * thickness * (1.0 + _SHEET_ABSCISSAE)
-    areas = np.array([skin_area(shape.offset(away * float(depth))) for depth in depths])
+    areas = np.array([shape.offset(away * float(depth)).area() for depth in depths])
     return float(0.5 * thickness * (_SHEET_WEIGHTS @ areas))
 
 
@@ -68,7 +61,7 @@ def _heights(cut: ConeCut, level_radius: float, half_angle: float, sweep_angles:
     return reach / rate
 
 
-def _cone_area(shape: PanelShape, index: int, patch: ConePatch) -> float:
+def _cone_area(shape: Chain, index: int, patch: ConePatch) -> float:
     """Integral over phi of the integral over the generatrix of (level_radius + height * sin(half_angle))."""
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     angles = 0.5 * patch.sweep * (1.0 + _SWEEP_ABSCISSAE)

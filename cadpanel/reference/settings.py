@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
+from cadpanel.setting import Option, setting
 
 By = Literal["length", "parameter"]
 
@@ -49,18 +50,63 @@ class ReferenceSettings:
         junctions: part the sides of panels where corners of others lie on them, as in a brick bond?
     """
 
-    seam_tolerance: float = 1.0
-    unit: str | None = None
-    faces: tuple[str, ...] | None = None
-    divide: int | None = None
-    lip: float | None = None
-    grid: tuple[int, int] | None = None
-    by: By | None = None
-    stations: tuple[float, ...] | None = None
-    spine: Path | None = None
-    network: Path | None = None
-    mesh: Path | None = None
-    junctions: bool = False
+    seam_tolerance: float = setting(
+        1.0, option=Option(metavar="MM", help="How far panels that meet may lie apart in the file.")
+    )
+    unit: str | None = setting(
+        None, option=Option(metavar="UNIT", help="Of every file that has none (.brep, meshes): m, in ...")
+    )
+    faces: tuple[str, ...] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            metavar="CHOICE,...",
+            help="Which faces are the skin: 3, 2-5, NAME, layer=NAME, color=#RRGGBB; see 'cadpanel inspect'. "
+            """A name with a comma stands in double quotes: '"Roof, north",layer="Skin, east"'.""",
+        ),
+    )
+    divide: int | None = setting(
+        None, option=Option(metavar="N", help="Cut each strip, or ring, into so many panels of equal length.")
+    )
+    lip: float | None = setting(
+        None,
+        option=Option(metavar="MM", help="With --divide: keep only a band of this width about the strip's lip."),
+    )
+    grid: tuple[int, int] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: parse_grid(text),
+            metavar="UxV",
+            help="Cut each surface into so many by so many panels.",
+        ),
+    )
+    by: By | None = setting(
+        None, option=Option(help="Are the grid's parts equal in length or in parameter? In length if not given.")
+    )
+    stations: tuple[float, ...] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: parse_stations(text),
+            metavar="MM,MM,...",
+            help="Cut by planes at these lengths along the strip.",
+        ),
+    )
+    spine: Path | None = setting(
+        None, option=Option(metavar="FILE", help="Measure the stations along the curve in this file.")
+    )
+    network: Path | None = setting(
+        None,
+        option=Option(metavar="FILE", help="Cut along the curves in this file; it may be the reference itself."),
+    )
+    mesh: Path | None = setting(None, option=Option(metavar="FILE", help="One panel a face of this OBJ or OFF mesh."))
+    junctions: bool = setting(
+        False,
+        option=Option(
+            help="Part sides where corners of other panels lie on them, as in a brick bond; goes with planar-polygon.",
+        ),
+    )
 
     def __post_init__(self) -> None:
         """Check every setting, and bring lists and paths into one form.
@@ -151,6 +197,30 @@ def choices_of(text: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+def parse_grid(text: str) -> tuple[int, int]:
+    """Two numbers of panels from "20x10".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = re.fullmatch(r"\s*(\d{1,7})\s*[xX]\s*(\d{1,7})\s*", text)
+    if found is None:
+        raise SettingsError(f"--grid is two numbers of panels like 20x10, not '{text}'.")
+    return int(found[1]), int(found[2])
+
+
+def parse_stations(text: str) -> tuple[float, ...]:
+    """Lengths from "1200,2400,3600".
+
+    Raises:
+        SettingsError: one of them is no number.
+    """
+    try:
+        return tuple(float(word) for word in text.split(","))
+    except ValueError:
+        raise SettingsError(f"--stations are lengths in mm like 1200,2400,3600, not '{text}'.") from None
+
+
 def choice_named(word: str) -> str:
     """How a name or layer is written among choices."""
     found = CHOICE.fullmatch(word)
@@ -204,3 +274,20 @@ def _stations(value: object) -> tuple[float, ...] | None:
     if any(second <= first for first, second in pairwise(places)):
         raise SettingsError("stations must rise from one to the next")
     return places
+
+
+class ReferenceKeywords(TypedDict, total=False):
+    """The fields of `ReferenceSettings` as keywords, which type checkers want written out; a test holds them alike."""
+
+    seam_tolerance: float
+    unit: str | None
+    faces: str | Sequence[str] | None
+    divide: int | None
+    lip: float | None
+    grid: tuple[int, int] | None
+    by: By | None
+    stations: Sequence[float] | None
+    spine: str | Path | None
+    network: str | Path | None
+    mesh: str | Path | None
+    junctions: bool

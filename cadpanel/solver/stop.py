@@ -8,7 +8,7 @@ from enum import Enum
 class Stop(Enum):
     """Why a solver stopped; the value says it in words that follow "it stopped as", with advice."""
 
-    HELD = "everything that it holds keeps to its tolerance, and nothing needs to change"
+    HELD = "everything that it holds keeps to its tolerance"
     AT_REST = "the cost no longer falls: more steps would change nothing, another start or method might"
     STEP_LIMIT = "its steps were used up before it came to rest: begin nearer, or ask for less"
     STALLED = "what it holds comes no nearer to its tolerance, however much that weighs: allow wider tolerances"

@@ -179,4 +179,5 @@ def _part(walked: Walk, part: slice) -> Walk:
         return Rulings(rulings.p[part], rulings.b[part], rulings.t[part], rulings.n[part], twist)
 
     w = walked
-    return Walk(w.feature, w.values[part], cut(w.anchor), cut(w.edges), cut(w.carriers), cut(w.arcs))
+    dimensions = tuple(one.take(part) for one in w.dimensions)
+    return Walk(w.feature, w.values[part], dimensions, cut(w.anchor), cut(w.edges), cut(w.carriers), cut(w.arcs))

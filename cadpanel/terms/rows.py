@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.solver.blocks import Normal
+
+if TYPE_CHECKING:
+    from cadpanel.solver.blocks import Normal
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,9 @@ def scatter_add(target: Array, index: IntArray, values: Array) -> None:
     if np.all(index[1:] > index[:-1]):
         target[index] += values
         return
+    # Here, not above: settings ask limits for their ranges, and neither help nor a refusal should wait for SciPy.
+    from scipy.sparse import csr_array
+
     groups = len(index)
     gather = csr_array((np.ones(groups), (index, np.arange(groups))), shape=(len(target), groups))
     summed: Array = np.asarray(gather @ values.reshape(groups, -1))

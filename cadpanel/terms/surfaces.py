@@ -10,7 +10,6 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
 from cadpanel.features.distance import patch_outer
-from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
@@ -103,7 +102,7 @@ def _surfaces(walked: Walk) -> Surfaces:
     numbers = np.zeros((3, panels, patches))
     for i, curved in enumerate(feature.curved):
         if curved:
-            numbers[:, :, i] = walked.values[:, feature.patch_slice(i)].T
+            numbers[:, :, i] = walked.dimensions[i].values.T
     outer = None
     if carriers.twist is not None:
         outer = np.stack([feature.by_unknowns(patch_outer(walked, i)) for i in range(patches)], axis=1)
@@ -130,13 +129,13 @@ def _surfaces(walked: Walk) -> Surfaces:
 
 @dataclass(frozen=True, slots=True)
 class CutPlanes:
-    """Cut planes m . x = s of all panels, m of unit length; 0 for polygons, which have none.
+    """Cut planes m . x = s of all panels, E at most, m of unit length; 0 where a panel has fewer or none.
 
     Attributes:
-        m: (panels, 2, 3).
-        s: (panels, 2).
-        dm: (panels, 2, 3, size) how m follows the unknowns, or None without derivatives.
-        ds: (panels, 2, size).
+        m: (panels, E, 3).
+        s: (panels, E).
+        dm: (panels, E, 3, size) how m follows the unknowns, or None without derivatives.
+        ds: (panels, E, size).
     """
 
     m: Array
@@ -155,18 +154,12 @@ def cut_planes_of(layout: Layout, walks: Sequence[Walk]) -> CutPlanes:
 
 
 def _cut_planes(walked: Walk) -> CutPlanes:
-    feature, panels = walked.feature, len(walked.values)
-    derivatives = walked.carriers.twist is not None
-    if not isinstance(feature, Feature):
-        count = len(feature.free)
-        slopes = (np.zeros((panels, 2, 3, count)), np.zeros((panels, 2, count))) if derivatives else (None, None)
-        return CutPlanes(np.zeros((panels, 2, 3)), np.zeros((panels, 2)), *slopes)
     m, s = cut_planes(walked)
     size = np.sqrt(dot(m, m))
     unit, place = m / size[..., None], s / size
-    if not derivatives:
+    if walked.carriers.twist is None:
         return CutPlanes(unit, place, None, None)
-    dm, ds = (feature.by_unknowns(rates) for rates in cut_plane_rates(walked))
+    dm, ds = (walked.feature.by_unknowns(rates) for rates in cut_plane_rates(walked))
     growth = (unit[..., None, :] @ dm)[..., 0, :]
     dm = (dm - unit[..., None] * growth[..., None, :]) / size[..., None, None]
     ds = (ds - place[..., None] * growth) / size[..., None]

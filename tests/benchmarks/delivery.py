@@ -33,8 +33,7 @@ from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
-from cadpanel.delivery.folder import PANELS, SKINS
-from cadpanel.delivery.outputs.step_files import write_skins, write_solids
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_skins, write_solids
 from cadpanel.delivery.records.from_fit import FOUR_EDGES
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet, build_panels
@@ -42,7 +41,8 @@ from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import AnyShape, ConePatch
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.reference.model import Reference
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
@@ -67,7 +67,7 @@ def strip(panels: int) -> Lip:
     )
 
 
-def local_shapes(reference: Reference) -> tuple[AnyShape, ...]:
+def local_shapes(reference: Reference) -> tuple[Panel, ...]:
     """Every panel fitted alone: enough to have something to build."""
     posed, begin = pose(reference, [FitSettings().feature_for(4)] * len(reference.panels))
     return panel_shapes(posed, fit_local(posed, reference, begin, FitSettings()).unknowns)
@@ -90,7 +90,7 @@ def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helpe
     return certify(folder / PANELS, folder / SKINS, expected, seams, helper)
 
 
-def _kinds(shape: AnyShape) -> tuple[PatchKind, ...]:
+def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
     cones: dict[bool, PatchKind] = {True: "cone", False: "cylinder"}
     return tuple(cones[patch.half_angle != 0.0] if isinstance(patch, ConePatch) else "plane" for patch in shape.patches)
 

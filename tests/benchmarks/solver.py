@@ -54,7 +54,7 @@ def prepare(panels: int, gap_weight: float) -> Prepared:
     lip = reference(long_lip(panels))
     problem, begin = pose(lip, [settings.feature_for(4)] * panels)
     local = fit_local(problem, lip, begin, settings)
-    return Prepared(weighted_objective(problem, Weights(gap=gap_weight, drift=1e-3)), local.unknowns)
+    return Prepared(weighted_objective(problem, Weights(gap=gap_weight, drift=1e-3), FitSettings()), local.unknowns)
 
 
 def ours(prepared: Prepared, stopping: Stopping = OURS) -> tuple[Solution, float]:

@@ -167,7 +167,7 @@ def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema) -> None:
         write_solids(path, panels[:-1], title, schema)
 
-    monkeypatch.setattr("cadpanel.delivery.deliver.write_solids", lose_one)
+    monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")
     assert answer.code == 1
     assert "Panel 'N-03' is missing among the solids." in answer.err
@@ -328,6 +328,12 @@ def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path
     assert list(tmp_path.iterdir()) == []
 
 
+def heed_every_signal() -> None:
+    """As in a terminal: jobs in the background of a shell, and whatever nohup starts, are told to ignore some."""
+    for one in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(one, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("after", [0.5, 6.0], ids=["while the kernel loads", "while it fits"])
 @pytest.mark.parametrize(
     ("sent", "code", "said"),
@@ -342,13 +348,17 @@ def test_whoever_stops_it_finds_nothing_left(
         stderr=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_every_signal,
     ) as process:
-        give_up = time.monotonic() + 60.0
-        while not list(tmp_path.glob(".cadpanel-*")) and time.monotonic() < give_up:
-            time.sleep(0.05)
-        time.sleep(after)
-        os.kill(process.pid, sent)
-        _, err = process.communicate(timeout=60)
+        try:
+            give_up = time.monotonic() + 60.0
+            while not list(tmp_path.glob(".cadpanel-*")) and time.monotonic() < give_up:
+                time.sleep(0.05)
+            time.sleep(after)
+            os.kill(process.pid, sent)
+            _, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert process.returncode == code
     assert err.splitlines()[-1:] == said
     assert list(tmp_path.iterdir()) == []

@@ -11,7 +11,8 @@ import pytest
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import PANELS, REPORT, SKINS
+from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.from_fit import panel_records
 from cadpanel.delivery.records.from_shape import patch_models
@@ -21,12 +22,13 @@ from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
 from cadpanel.fitting.run import fit
-from cadpanel.geometry.shape import ConePatch, PanelShape
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel
 
-OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths")
+OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths", "shapes")
 
 
 # ------------------------------------------------------------------------------------------------------------- patches

@@ -146,10 +146,11 @@ def test_every_patch_and_cut_finds_its_own_numbers(name):
 
 
 def test_a_polygon_has_neither_patches_with_numbers_nor_ends():
-    with pytest.raises(TypeError, match="no numbers of its own"):
-        Polygon(5).patch_slice(0)
-    with pytest.raises(TypeError, match="no end 1"):
-        Polygon(5).cut_slice(1)
+    assert Polygon(5).numbers[Polygon(5).patch_slice(0)] == ()
+    assert Polygon(5).cut_numbers.shape == (0, 3)
+    assert not Polygon(5).four_sided
+    assert np.array_equal(named("cone").cut_numbers[1], np.arange(11, 14))
+    assert named("cone").four_sided
 
 
 @every_feature

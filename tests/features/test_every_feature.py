@@ -83,8 +83,8 @@ def tangent_faults(walked, edges):
                 if feature_.patches[patch].kind == "plane":
                     apart, normal = plane_distance(x, p, n), n
                 else:
-                    at = feature_.patch_slice(patch).start
-                    cone = p, t, n, walked.values[:, at], walked.values[:, at + 1]
+                    radius, half_angle, _ = walked.dimensions[patch].values.T
+                    cone = p, t, n, radius, half_angle
                     apart, normal = cone_distance(x, *cone), cone_normal(x, *cone)[:, 0]
                 distance = max(distance, np.abs(apart).max())
                 kink = max(kink, np.linalg.norm(cross(normal, edges.n[:, ruling]), axis=-1).max())

@@ -10,7 +10,8 @@ from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.measures.edges import edge_curves
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import ConePatch, PanelShape, PolygonShape, edge_corners
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from tests.chains import CHAINS, FEATURES, POLYGONS, made_problem, mixed_unknowns, problem_of, random_unknowns
 
 ROUNDING = 1e-12

@@ -7,7 +7,7 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.instances import random_shapes

@@ -10,7 +10,9 @@ from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 from tests.instances import NAMES, TAPERED, random_polygon, random_shapes
 from tests.known_panels import alone
 
@@ -92,7 +94,7 @@ def test_a_polygon_is_recovered_from_its_samples(corners):
 def all_features():
     """One panel of every feature but the longest, which takes its time, and two polygons."""
     names = [name for name in NAMES if name != "cone-spline-6"]
-    known: list[AnyShape] = [random_shapes(feature(name), seed, 1)[0] for seed, name in enumerate(names)]
+    known: list[Panel] = [random_shapes(feature(name), seed, 1)[0] for seed, name in enumerate(names)]
     known += [random_polygon(1, 5), random_polygon(2, 3)]
     return known, [*(feature(name) for name in names), polygon(5), polygon(3)]
 

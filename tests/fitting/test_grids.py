@@ -19,8 +19,8 @@ from cadpanel.fitting.problem import pose
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.chain_checks import check_buildable
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
+from cadpanel.geometry.sheet_checks import check_buildable
 from cadpanel.reference.model import Seam
 from tests.grids import dome, write_grid, write_honeycomb, write_mixed_row
 from tests.known_panels import alone, moved, renumbered

@@ -7,9 +7,9 @@ from cadpanel.features.catalogue import feature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Group, Layout
 from cadpanel.features.patches import Cone, Plane
-from cadpanel.fitting.bounds import LEAST_SHARE, LEAST_WIDTH, STEEPEST, natural_bounds
-from cadpanel.terms.limits.flange_width import WidthLimit
-from cadpanel.terms.limits.min_radius import RadiusLimit
+from cadpanel.fitting.bounds import LEAST_SHARE, STEEPEST, natural_bounds
+from cadpanel.terms.limits.flange_width import FlangeWidth, WidthTerm
+from cadpanel.terms.limits.min_radius import RadiusTerm
 from cadpanel.terms.state import State
 from tests.chains import FEATURES, random_unknowns
 
@@ -58,7 +58,7 @@ def test_what_the_author_bounds_stays_as_the_author_has_it():
     lower, upper = bounds_of(of, unknowns)
     where = {of.numbers[index].name: column for column, index in enumerate(of.free)}
     assert np.all(lower[:, where["patch 0: width"]] == 300.0 / LENGTH)
-    assert np.all(lower[:, where["patch 2: width"]] == LEAST_WIDTH / LENGTH)
+    assert np.all(lower[:, where["patch 2: width"]] == FlangeWidth.default / LENGTH)
     assert np.all(lower[:, where["patch 1: radius"]] == 200.0 / LENGTH)
     assert np.all(upper[:, where["patch 1: radius"]] == 900.0 / LENGTH)
     assert np.all(upper[:, where["patch 1: half_angle"]] == 1.2)
@@ -68,8 +68,8 @@ def test_what_the_author_bounds_stays_as_the_author_has_it():
 
 def limits_of(of, panels, least):
     group = Group(of, np.arange(panels))
-    limits = [RadiusLimit(group, 0, panels, least)]
-    return limits if all(of.curved) else [*limits, WidthLimit(group, 0, panels, least)]
+    limits = [RadiusTerm(group, 0, panels, least)]
+    return limits if all(of.curved) else [*limits, WidthTerm(group, 0, panels, least)]
 
 
 @chains
@@ -110,7 +110,7 @@ def test_the_radius_at_a_corner_is_the_distance_to_the_axis_over_the_cosine():
     layout = Layout.of([of] * len(unknowns))
     state = State(layout, layout.walk(unknowns, derivatives=False))
     (walked,) = state.walks
-    lengths, _ = RadiusLimit(layout.groups[0], 0, len(unknowns), 1.0).lengths(walked, state.corners, derivatives=False)
+    lengths, _ = RadiusTerm(layout.groups[0], 0, len(unknowns), 1.0).lengths(walked, state.corners, derivatives=False)
     at = of.patch_slice(0).start
     radius, angle = walked.values[:, at], walked.values[:, at + 1]
     t, n = walked.anchor.t[:, 0], walked.anchor.n[:, 0]

@@ -10,7 +10,7 @@ from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
 from tests.known_panels import alone, flipped, moved, posed, renumbered

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import PANELS, REPORT, SKINS
-from cadpanel.delivery.outputs.step_files import write_solids
+from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_solids
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.features.catalogue import feature
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from tests.delivered import fitted
 from tests.freecad.importer import import_with_freecad
 from tests.instances import NAMES, random_polygon, random_shapes
@@ -77,7 +77,7 @@ def test_skins_have_two_planes_and_one_cone_and_the_areas_of_the_report(folder: 
 
 
 def test_polygons_and_every_feature_arrive_as_valid_solids_of_their_volume(tmp_path: Path) -> None:
-    shapes: list[AnyShape] = [random_polygon(1, corners) for corners in (3, 5, 6)]
+    shapes: list[Panel] = [random_polygon(1, corners) for corners in (3, 5, 6)]
     shapes += [replace(random_shapes(feature(name), 2, 1)[0], name=name) for name in NAMES]
     built = build_panels(shapes, SheetSettings())
     write_solids(tmp_path / PANELS, built, "all")

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.shape import ConePatch
-from cadpanel.geometry.volume import patch_areas, sheet_volume, skin_area
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.volume import patch_areas, sheet_volume
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 RELATIVE = 1e-13
@@ -37,7 +37,7 @@ def test_a_frustum_has_the_area_of_its_development():
     shape = replace(shape, cut_normals=np.array([axis, axis]))
     distances = [400.0 / math.tan(half_angle) + height for height in (-500.0, 500.0)]
     expected = 0.5 * sweep * math.sin(half_angle) * (distances[1] ** 2 - distances[0] ** 2)
-    assert skin_area(shape) == pytest.approx(expected, rel=RELATIVE)
+    assert shape.area() == pytest.approx(expected, rel=RELATIVE)
 
 
 @given(panels)
@@ -48,18 +48,18 @@ def test_a_sheet_has_one_volume_from_whichever_skin_it_is_measured(shape):
 @given(panels)
 def test_moving_a_panel_keeps_its_area_and_volume(shape):
     away = moved(shape, (1234.5, -99.0, 7.0))
-    assert skin_area(away) == pytest.approx(skin_area(shape), rel=1e-12)
+    assert away.area() == pytest.approx(shape.area(), rel=1e-12)
     assert sheet_volume(away, 3.0) == pytest.approx(sheet_volume(shape, 3.0), rel=1e-11)
 
 
 @given(panels)
 def test_a_thin_sheet_has_the_volume_of_its_skin_times_its_thickness(shape):
-    assert sheet_volume(shape, 1e-4) == pytest.approx(1e-4 * skin_area(shape), rel=1e-5)
+    assert sheet_volume(shape, 1e-4) == pytest.approx(1e-4 * shape.area(), rel=1e-5)
 
 
 @given(st.integers(0, 1000))
 def test_the_area_is_continuous_where_the_cone_becomes_a_cylinder(seed):
-    areas = [skin_area(random_panel(seed, chain="cone", half_angle=angle)) for angle in (0.0, 1e-12, -1e-12)]
+    areas = [random_panel(seed, chain="cone", half_angle=angle).area() for angle in (0.0, 1e-12, -1e-12)]
     assert areas == pytest.approx([areas[0]] * 3, rel=1e-10)
 
 

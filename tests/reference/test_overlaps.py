@@ -11,7 +11,7 @@ from cadpanel.reference.model import RawPanel
 from cadpanel.reference.oriented_panel import Sheet, sheet
 from cadpanel.reference.outline import EVEN_PARTS, Side, find_outline
 from cadpanel.reference.overlaps import _loop, refuse_overlaps
-from tests.reference.test_unmet import tile
+from tests.reference.test_near_misses import tile
 from tests.reference_shapes import (
     Lip,
     lens,

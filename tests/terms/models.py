@@ -21,7 +21,8 @@ from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.edge_gap import MixedGap
-from cadpanel.terms.limits.corner_drift import DriftLimit, Limited, Outline
+from cadpanel.terms.limits.corner_drift import DriftTerm
+from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
@@ -35,7 +36,7 @@ DIFFERENCES = 1e-6
 ROUNDING = 1e-11
 
 
-HELD = (CornerGap, ArcGap, MixedGap, DriftLimit)
+HELD = (CornerGap, ArcGap, MixedGap, DriftTerm)
 
 
 class Together:
@@ -65,13 +66,18 @@ class Together:
         return [rows for part in self.parts for rows in part.rows(state)]
 
 
+def drift_terms(problem: Problem) -> list[DriftTerm]:
+    """Along and across."""
+    return [term for term in problem.limits(FitSettings()) if isinstance(term, DriftTerm)]
+
+
 TERMS: dict[str, Callable[[Problem], list[Term]]] = {
     "deviation": lambda problem: [problem.deviation],
     "corner gap": lambda problem: list(problem.corner_gaps(1.0)),
     "arc gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, ArcGap)],
     "mixed gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, MixedGap)],
-    "drift along": lambda problem: list(problem.drift_limits(FitSettings(), 0.0)[:1]),
-    "drift across": lambda problem: list(problem.drift_limits(FitSettings(), 0.0)[1:]),
+    "drift along": lambda problem: list(drift_terms(problem)[:1]),
+    "drift across": lambda problem: list(drift_terms(problem)[1:]),
 }
 
 
@@ -290,7 +296,8 @@ def _turned_end_for_end(of: Feature, unknowns: Array) -> Array:
     last = len(of.patches) - 1
     for i, curved in enumerate(of.curved):
         signs = [1.0, -1.0, 1.0] if curved else [1.0, -1.0]
-        values[of.patch_slice(i)] = old[of.patch_slice(last - i)] * signs
+        far = of.patches[last - i].dimensions(old[None, of.patch_slice(last - i)])
+        values[of.patch_slice(i)] = of.patches[i].numbers_for(far.values * signs)[0]
     for end in (0, 1):
         values[of.cut_slice(end)] = old[of.cut_slice(1 - end)] * [-1.0, 1.0, -1.0]
     turned: Array = values[of.free]

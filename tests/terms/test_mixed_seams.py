@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.features.carrying import carry
 from cadpanel.features.catalogue import feature
 from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
-from cadpanel.features.patches import Cone
 from cadpanel.features.polygon import Polygon
 from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.shapes import panel_shapes
@@ -209,7 +209,7 @@ def one_cone_told_twice(stretch=1.0):
     # The anchor of the whole cone lies further on, by half of the second sweep.
     start = walked.anchor
     one: Any = SimpleNamespace(p=start.p[:, 0], b=start.b[:, 0], t=start.t[:, 0], n=start.n[:, 0])
-    middle, _ = Cone().carry(one, np.array([[radius, half_angle, 0.5 * sweeps[1]]]), 1.0)
+    middle, _ = carry("cone", one, np.array([[radius, half_angle, 0.5 * sweeps[1]]]), 1.0)
     into = np.stack([middle.b[0], middle.t[0], middle.n[0]], axis=1)
     numbers = np.zeros((1, len(whole.numbers)))
     numbers[0, whole.patch_slice(0)] = radius * stretch, half_angle, sum(sweeps)

@@ -1,4 +1,4 @@
-"""A panel's skin as an open shell of exact planes, cones and cylinders that share their straight generatrices."""
+"""A chain's skin as faces of exact planes, cones and cylinders that share their straight generatrices."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from typing import cast
 
 from OCP.BRep import BRep_Builder
 from OCP.GeomAbs import GeomAbs_G1
-from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_Vertex
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Vertex
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
-from cadpanel.brep.building.edges import shell_of
-from cadpanel.brep.building.polygon_sheet import polygon_skin
-from cadpanel.geometry.chain_checks import check_skin
 from cadpanel.geometry.cone_sections import EllipticSection, axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
-from cadpanel.geometry.slender_cones import straighten
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
 
 _BUILDER = BRep_Builder()
 
@@ -41,18 +38,9 @@ class SkinTopology:
     faces: tuple[TopoDS_Face, ...]
 
 
-def build_skin(shape: AnyShape) -> TopoDS_Shell:
-    """The panel's skin as an open shell, its faces' normals along n (outward).
-
-    A cone of half angle 5e-6 rad or less is built as a cylinder; `straighten` says which and what it moves.
-
-    Raises:
-        PanelError: if the skin cannot be built (see `check_skin`).
-    """
-    check_skin(shape)
-    if isinstance(shape, PolygonShape):
-        return polygon_skin(shape)
-    return shell_of(skin_topology(straighten(shape).shape).faces)
+def chain_skin(shape: PanelShape) -> tuple[TopoDS_Face, ...]:
+    """The faces of a skin that has passed its checks, their normals along n."""
+    return skin_topology(shape).faces
 
 
 def skin_topology(shape: PanelShape) -> SkinTopology:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Vertex
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
@@ -27,21 +27,18 @@ class _Level:
         self.face: TopoDS_Face = edges.face_on(plane.surface, plane.agrees, self.edges)
 
 
-def polygon_faces(near: PolygonShape, far: PolygonShape) -> tuple[TopoDS_Face, list[TopoDS_Face]]:
-    """The face of the skin, and all faces of the sheet between two parallel polygons with their normals outwards.
-
-    The skin's own face is among those of the sheet; `near` is the skin.
-    """
+def polygon_sheet(near: PolygonShape, far: PolygonShape) -> tuple[list[TopoDS_Face], list[TopoDS_Face]]:
+    """The face of the skin `near`, and all faces of the sheet between it and the parallel polygon `far`."""
     skin, other = _Level(near), _Level(far)
     skin_is_top = float((near.outline[0] - far.outline[0]) @ near.normal) > 0.0
     top, bottom = (skin, other) if skin_is_top else (other, skin)
     faces = [top.face, TopoDS.Face_s(bottom.face.Reversed()), *_walls(near.normal, top, bottom)]
-    return skin.face, faces
+    return [skin.face], faces
 
 
-def polygon_skin(shape: PolygonShape) -> TopoDS_Shell:
-    """The polygon as an open shell of one face, its normal outwards."""
-    return edges.shell_of([_Level(shape).face])
+def polygon_skin(shape: PolygonShape) -> list[TopoDS_Face]:
+    """The polygon as one face, its normal outwards."""
+    return [_Level(shape).face]
 
 
 def _walls(normal: Array, top: _Level, bottom: _Level) -> list[TopoDS_Face]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -20,6 +19,7 @@ from cadpanel.brep.curves.projection import Landing
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.cutting.edges_across_gaps import bridges, points_along
 from cadpanel.brep.cutting.panel_names import Link, place_names
+from cadpanel.brep.kernel.shape_maps import ShapeMap, ShapeSet
 from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.split_along_edges import split_along
@@ -112,7 +112,7 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
         pieces = split_along(faces, [edge for _, edge in owners], what, part * tolerance)
         cut = _looked_at(pieces, owners, tolerance)
         if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
-            kept = _without(pieces, owners, {hash(edge) for _, edge in cut.loose})
+            kept = _without(pieces, owners, ShapeSet(edge for _, edge in cut.loose))
             pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept, tolerance)
         if not (cut.loose or cut.slivers):
@@ -122,53 +122,47 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
 
 
 def _without(
-    pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], loose: set[int]
+    pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], loose: ShapeSet
 ) -> list[tuple[int, TopoDS_Edge]]:
     """The parts of the curves that do separate something."""
     return [
         (index, TopoDS.Edge_s(part))
         for (index, _), parts in zip(owners, pieces.tools, strict=True)
         for part in parts
-        if hash(part) not in loose
+        if part not in loose
     ]
 
 
 def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolerance: float) -> _Cut:
     faces = tuple(face for parts in pieces.faces for face in parts)
-    around: dict[int, list[int]] = defaultdict(list)
-    edges: dict[int, TopoDS_Edge] = {}
+    around: ShapeMap[list[int]] = ShapeMap()
     # A curve that ends inside a piece is kept there as an edge on none of its borders.
-    inner: set[int] = set()
-    degenerate: set[int] = set()
+    inner = ShapeSet()
     for place, face in enumerate(faces):
         for shape in shapes_of(face, TopAbs_EDGE):
-            edge = hash(shape)
-            around[edge].append(place)
-            edges.setdefault(edge, TopoDS.Edge_s(shape))
+            around.setdefault(shape, []).append(place)
             if shape.Orientation() == TopAbs_INTERNAL:
-                inner.add(edge)
-            if BRep_Tool.Degenerated_s(TopoDS.Edge_s(shape)):
-                degenerate.add(edge)
-    curve_edges: dict[int, int] = {}
+                inner.add(shape)
+    curve_edges: ShapeMap[int] = ShapeMap()
     loose: list[tuple[int, TopoDS_Edge]] = []
     for (index, _), parts in zip(owners, pieces.tools, strict=True):
         for part in parts:
-            curve_edges[hash(part)] = index
-            users = around.get(hash(part), [])
+            curve_edges[part] = index
+            users = around.get(part, [])
             # Twice in one piece: the piece lies on both sides. In no piece: the kernel left the curve out.
-            if not users or hash(part) in inner or (len(users) == 2 and users[0] == users[1]):
+            if not users or part in inner or (len(users) == 2 and users[0] == users[1]):
                 loose.append((index, TopoDS.Edge_s(part)))
+    used = [(TopoDS.Edge_s(shape), users) for shape, users in around.items()]
     links = [
-        (users[0], users[1], edges[edge], edge in curve_edges)
-        for edge, users in around.items()
+        (users[0], users[1], edge, edge in curve_edges)
+        for edge, users in used
         if len(users) == 2 and users[0] != users[1]
     ]
-    open_edges = [edge for edge, users in around.items() if len(users) == 1 and edge not in degenerate]
+    open_edges = [(edge, users[0]) for edge, users in used if len(users) == 1 and not BRep_Tool.Degenerated_s(edge)]
     owner = [number for number, parts in enumerate(pieces.faces) for _ in parts]
-    between = bridges([edges[edge] for edge in open_edges], [owner[around[edge][0]] for edge in open_edges], tolerance)
-    for one, other in ((open_edges[first], open_edges[second]) for first, second in between):
-        made = one in curve_edges or other in curve_edges
-        links.append((around[one][0], around[other][0], edges[one], made))
+    between = bridges([edge for edge, _ in open_edges], [owner[user] for _, user in open_edges], tolerance)
+    for (one, user), (other, other_user) in ((open_edges[first], open_edges[second]) for first, second in between):
+        links.append((user, other_user, one, one in curve_edges or other in curve_edges))
     return _Cut(
         faces=faces,
         links=tuple(links),
@@ -178,12 +172,12 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolera
 
 
 def _slivers(
-    faces: Sequence[TopoDS_Face], curve_edges: dict[int, int], tolerance: float
+    faces: Sequence[TopoDS_Face], curve_edges: ShapeMap[int], tolerance: float
 ) -> Iterator[tuple[int, TopoDS_Edge, float]]:
     """The pieces narrower than the tolerance that a curve borders."""
     for face in faces:
         edges = [TopoDS.Edge_s(shape) for shape in shapes_of(face, TopAbs_EDGE)]
-        drawn = [edge for edge in edges if hash(edge) in curve_edges]
+        drawn = [edge for edge in edges if edge in curve_edges]
         if not drawn:
             continue
         area, around = np.zeros(3), 0.0
@@ -197,7 +191,7 @@ def _slivers(
         width = 2.0 * float(norm(area)) / around
         if width < tolerance and area_of(face) < 0.5 * tolerance * around:
             longest = max(drawn, key=length_of)
-            yield curve_edges[hash(longest)], longest, width
+            yield curve_edges[longest], longest, width
 
 
 def _panels(name: str, cut: _Cut) -> tuple[CutPanel, ...]:

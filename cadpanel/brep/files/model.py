@@ -9,6 +9,7 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.files.names import call_panels
+from cadpanel.brep.kernel.shape_maps import ShapeSet
 from cadpanel.brep.kernel.shapes import loose_edges, shapes_of
 
 
@@ -113,7 +114,7 @@ class Model:
         found: list[ModelFace] = []
         for index, (part, panel) in enumerate(zip(self.parts, self.panel_names(), strict=True)):
             solids = [shape for solid in shapes_of(part.shape, TopAbs_SOLID) for shape in shapes_of(solid, TopAbs_FACE)]
-            bounding = {hash(face) for face in solids}
+            bounding = ShapeSet(solids)
             for face, label in zip(shapes_of(part.shape, TopAbs_FACE), part.face_labels, strict=True):
                 found.append(
                     ModelFace(
@@ -121,7 +122,7 @@ class Model:
                         part=index,
                         label=label.over(part.label),
                         face=TopoDS.Face_s(face),
-                        of_solid=hash(face) in bounding,
+                        of_solid=face in bounding,
                         names=(label.name, *part.names) if label.name else part.names,
                         panel=panel,
                     )

@@ -19,6 +19,7 @@ from OCP.TopoDS import TopoDS_Shape
 from cadpanel.arrays import Array
 from cadpanel.brep.files.model import Label
 from cadpanel.brep.files.opennurbs import ConversionError
+from cadpanel.brep.kernel.shapes import children, compound_of
 from cadpanel.errors import ReferenceFileError
 
 # Blocks may hold blocks; a file in which they go deeper than this holds itself.
@@ -81,9 +82,12 @@ def put(shape: TopoDS_Shape, matrix: Array) -> TopoDS_Shape:
     for row in range(3):
         for column in range(4):
             map_.SetValue(row + 1, column + 1, float(matrix[row, column]))
-    modifier = BRepTools_Modifier(shape)
+    # In a group, as the kernel reverses a mirrored face that is part of one, but not a lone one.
+    group = compound_of([shape])
+    modifier = BRepTools_Modifier(group)
     modifier.Perform(BRepTools_GTrsfModification(map_))
-    return modifier.ModifiedShape(shape)
+    (placed,) = children(modifier.ModifiedShape(group))
+    return placed
 
 
 class _Walk:

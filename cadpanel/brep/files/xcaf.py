@@ -24,6 +24,7 @@ from OCP.XCAFDoc import (
 
 from cadpanel.brep.files.model import Label, Part
 from cadpanel.brep.files.step_products import instance_name, is_sheet_in_pieces, label_name, split_groups
+from cadpanel.brep.kernel.shape_maps import ShapeMap
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 
 
@@ -99,14 +100,14 @@ def _face_labels(product: TDF_Label, shape: TopoDS_Shape, layers: XCAFDoc_LayerT
     """What the document says of each face of a product; what it says of a shell holds for the shell's faces."""
     below = TDF_LabelSequence()
     XCAFDoc_ShapeTool.GetSubShapes_s(product, below)
-    said: dict[int, Label] = {}
+    said: ShapeMap[Label] = ShapeMap()
     for label in _each(below):
         sub_shape = XCAFDoc_ShapeTool.GetShape_s(label)
         for face in shapes_of(sub_shape, TopAbs_FACE):
             own = _label(label, layers)
-            key = hash(face)
-            said[key] = own.over(said.get(key, Label())) if sub_shape.IsSame(face) else said.get(key, Label()).over(own)
-    return tuple(said.get(hash(face), Label()) for face in shapes_of(shape, TopAbs_FACE))
+            known = said.get(face, Label())
+            said[face] = own.over(known) if sub_shape.IsSame(face) else known.over(own)
+    return tuple(said.get(face, Label()) for face in shapes_of(shape, TopAbs_FACE))
 
 
 def _label(label: TDF_Label, layers: XCAFDoc_LayerTool) -> Label:

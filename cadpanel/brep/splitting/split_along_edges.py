@@ -21,6 +21,7 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_IN, TopAbs_INTERNAL, 
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
+from cadpanel.brep.kernel.shape_maps import ShapeMap, ShapeSet
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import FUZZY, Pieces, listed, require_whole, split_faces, unsplit
 
@@ -64,8 +65,8 @@ def split_along(faces: Sequence[TopoDS_Face], edges: Sequence[TopoDS_Edge], what
         raise unsplit(what, str(error)) from error
     for face, parts in zip(faces, pieces, strict=True):
         require_whole(face, parts, what, fuzzy)
-    used = {hash(edge) for edge in shapes_of(whole, TopAbs_EDGE)}
-    tools = (tuple(part for part in parts if hash(part) in used) for parts in images)
+    used = ShapeSet(shapes_of(whole, TopAbs_EDGE))
+    tools = (tuple(part for part in parts if part in used) for parts in images)
     return Pieces(faces=pieces, tools=tuple(parts or (edge,) for parts, edge in zip(tools, edges, strict=True)))
 
 
@@ -91,7 +92,7 @@ def _pieces(
     """The pieces of one face, with its orientation."""
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     border, changed = _border(forward, fuse)
-    inner = _inner(forward, images, {hash(edge) for edge in border})
+    inner = _inner(forward, images, ShapeSet(border))
     if not inner and not changed:
         return (face,)
     builder = BOPAlgo_BuilderFace()
@@ -127,13 +128,13 @@ def _border(face: TopoDS_Face, fuse: BRepAlgoAPI_BuilderAlgo) -> tuple[list[Topo
     return found, changed
 
 
-def _inner(face: TopoDS_Face, images: Sequence[tuple[TopoDS_Edge, ...]], border: set[int]) -> list[TopoDS_Edge]:
+def _inner(face: TopoDS_Face, images: Sequence[tuple[TopoDS_Edge, ...]], border: ShapeSet) -> list[TopoDS_Edge]:
     """The parts of the edges that lie on a face and not along its border."""
     test: BRepTopAdaptor_FClass2d | None = None
-    found: dict[int, TopoDS_Edge] = {}
+    found: ShapeMap[TopoDS_Edge] = ShapeMap()
     for parts in images:
         for part in parts:
-            if hash(part) in border or hash(part) in found:
+            if part in border or part in found:
                 continue
             if not BOPTools_AlgoTools2D.HasCurveOnSurface_s(part, face):
                 continue
@@ -142,7 +143,7 @@ def _inner(face: TopoDS_Face, images: Sequence[tuple[TopoDS_Edge, ...]], border:
             curve = BRepAdaptor_Curve2d(part, face)
             middle = curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter()))
             if test.Perform(middle) == TopAbs_IN:
-                found[hash(part)] = part
+                found[part] = part
     return list(found.values())
 
 

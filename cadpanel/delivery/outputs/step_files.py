@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from cadpanel.brep.step.file import Color, write_step
+from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.settings import Schema
-from cadpanel.delivery.sheets import PanelSheet
 
+if TYPE_CHECKING:
+    from cadpanel.brep.step.file import Color
+    from cadpanel.delivery.sheets import PanelSheet
+
+PANELS = "panels.step"
+SKINS = "skins.step"
 PALETTE: tuple[Color, ...] = (
     (0.62, 0.68, 0.73),
     (0.76, 0.72, 0.65),
@@ -18,12 +24,38 @@ PALETTE: tuple[Color, ...] = (
 """Quiet colours that tell neighbours apart, sRGB."""
 
 
+class PanelsStep(Output):
+    """The sheets as solids, one product a panel."""
+
+    name = "panels"
+    files = (PANELS,)
+    always = True
+
+    def write(self, folder: Path, delivery: Delivery) -> None:
+        """See `Output.write`."""
+        write_solids(folder / PANELS, delivery.panels, delivery.title, delivery.sheet.schema)
+
+
+class SkinsStep(Output):
+    """The skins as open shells, one product a panel."""
+
+    name = "skins"
+    files = (SKINS,)
+    always = True
+
+    def write(self, folder: Path, delivery: Delivery) -> None:
+        """See `Output.write`."""
+        write_skins(folder / SKINS, delivery.panels, delivery.title, delivery.sheet.schema)
+
+
 def write_solids(path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242") -> None:
     """Write one solid a panel.
 
     Raises:
         DeliveryError: the file cannot be written.
     """
+    from cadpanel.brep.step.file import write_step
+
     shapes = [(panel.shape.name, panel.solid, colour(i)) for i, panel in enumerate(panels)]
     write_step(path, shapes, title=f"{title} panels", schema=schema)
 
@@ -34,6 +66,8 @@ def write_skins(path: Path, panels: Sequence[PanelSheet], title: str, schema: Sc
     Raises:
         DeliveryError: the file cannot be written.
     """
+    from cadpanel.brep.step.file import write_step
+
     shapes = [(panel.shape.name, panel.skin, colour(i)) for i, panel in enumerate(panels)]
     write_step(path, shapes, title=f"{title} skins", schema=schema)
 

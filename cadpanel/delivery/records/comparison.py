@@ -8,7 +8,8 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from cadpanel.delivery.records.jsonfile import NonNegative, Record, read_json, write_json
-from cadpanel.delivery.records.report import NonNegativeCount, ReferenceModel, SummaryModel, UnitsModel, WeightsModel
+from cadpanel.delivery.records.report import ReferenceModel, SummaryModel, UnitsModel
+from cadpanel.delivery.records.settings import ComparisonSettingsModel
 
 
 class ColumnModel(Record):
@@ -29,20 +30,6 @@ class ColumnModel(Record):
     summary: SummaryModel
     local_rms_deviation: NonNegative
     seconds: NonNegative
-
-
-class ComparisonSettingsModel(Record):
-    """What all columns were fitted under; see the report's settings."""
-
-    cadpanel_version: str
-    tilt: Literal["free", "fixed"]
-    gap_tolerance: NonNegative | None
-    drift_along: NonNegative
-    drift_across: NonNegative
-    weights: WeightsModel | None
-    restarts: NonNegativeCount
-    seed: int
-    seam_tolerance: NonNegative
 
 
 class ComparisonModel(Record):

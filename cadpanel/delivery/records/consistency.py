@@ -7,6 +7,7 @@ summary is the worst of its panels and seams can.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.features.catalogue import AUTO
 from cadpanel.geometry.shape import edge_corners
+from cadpanel.terms.limits.catalogue import LIMITS
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
@@ -149,27 +151,36 @@ def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
         yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
     if summary.tolerance_met and widest > tolerance:
         yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
-    limits = (
-        ("along", summary.drift_along_percent, 100.0 * report.settings.drift_along),
-        ("across", summary.drift_across_percent, 100.0 * report.settings.drift_across),
-    )
-    beyond = [limit for limit in limits if limit[1] > limit[2] + SAME_LENGTH]
+    limits = list(_limits(report, summary))
+    beyond = [limit for limit in limits if limit.over > SAME_LENGTH]
     if summary.tolerance_met and beyond:
-        way, drift, limit = beyond[0]
-        yield f"The report calls its limits met, and a drift {way} in it is {drift:.6g} %, {limit:.6g} % are allowed."
+        yield beyond[0].sentence
     far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
-    if (
-        not summary.tolerance_met
-        and not far
-        and not beyond
-        and widest < tolerance - SAME_LENGTH
-        and _well_within(limits)
-    ):
-        yield "The report calls its tolerance not met, and all its gaps and drifts are within their limits."
+    within = widest < tolerance - SAME_LENGTH and all(limit.over < -SAME_LENGTH for limit in limits)
+    if not summary.tolerance_met and not far and within:
+        yield "The report calls its tolerance not met, and all its gaps and limits are kept."
 
 
-def _well_within(limits: tuple[tuple[str, float, float], ...]) -> bool:
-    return all(drift < limit - SAME_LENGTH for _, drift, limit in limits)
+@dataclass(frozen=True, slots=True)
+class _Limited:
+    """A limit in a report: by how much it is broken, mm or percent, and what to say if it is called kept."""
+
+    over: float
+    sentence: str
+
+
+def _limits(report: ReportModel, summary: SummaryModel) -> Iterator[_Limited]:
+    """The limits that the report states a worst value for; reports from before a limit was known have none."""
+    for limit in LIMITS:
+        found = getattr(summary, limit.rows[-1].key)
+        if found is None:
+            continue
+        allowed, unit = limit.stated(limit.allowed(report.settings)), "%" if limit.percent else "mm"
+        yield _Limited(
+            allowed - found if limit.at_least else found - allowed,
+            f"The report calls its limits met, and states {found:.6g} {unit} for the {limit.what}, where "
+            f"{allowed:.6g} {unit} are allowed.",
+        )
 
 
 def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -16,19 +15,14 @@ from cadpanel.delivery.records.report import (
     ReferenceModel,
     SeamModel,
     Setting,
-    SettingsModel,
     SolveModel,
-    WeightsModel,
 )
 from cadpanel.delivery.records.summary import summary
-from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import PanelSheet
-from cadpanel.features.feature import Feature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.result import FitResult
-from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -57,33 +51,6 @@ def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
         for name, value in changed.items()
         if value != getattr(usual, name)
     }
-
-
-def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSettings) -> SettingsModel:
-    """Everything that is needed to run the fit again."""
-    weights = settings.weights
-    return SettingsModel(
-        cadpanel_version=version("cadpanel"),
-        feature=settings.feature_name,
-        composition=tuple(map(repr, settings.feature.patches)) if isinstance(settings.feature, Feature) else None,
-        max_deviation=settings.max_deviation,
-        tilt=settings.tilt,
-        method=settings.method,
-        gap_tolerance=settings.gap_tolerance if weights is None else None,
-        drift_along=settings.drift_along,
-        drift_across=settings.drift_across,
-        min_radius=settings.min_radius,
-        blend=tuple(map(str, settings.blend)),
-        weights=None
-        if weights is None
-        else WeightsModel(gap=weights.gap, deviation=weights.deviation, drift=weights.drift),
-        restarts=settings.restarts,
-        seed=settings.seed,
-        seam_tolerance=reference.seam_tolerance,
-        thickness=sheet.thickness,
-        skin_side=sheet.skin_side,
-        step_schema=sheet.schema,
-    )
 
 
 def solve_record(result: FitResult) -> SolveModel:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import singledispatch
 
 import numpy as np
 
@@ -10,14 +11,29 @@ from cadpanel.arrays import Array
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 
 
-def patch_models(shape: AnyShape) -> tuple[PatchModel, ...]:
-    """The patches of a panel as it is built (see `straighten`), in the order of the walk."""
+@singledispatch
+def patch_models(shape: Panel) -> tuple[PatchModel, ...]:
+    """The patches of a panel as it is built, in the order of the walk; one entry for each kind of panel.
+
+    Raises:
+        TypeError: nobody has said how panels of this kind are recorded.
+    """
+    raise TypeError(f"no record is known for a panel like {shape!r}: register one for its class")
+
+
+@patch_models.register
+def _of_polygon(shape: PolygonShape) -> tuple[PatchModel, ...]:
+    return (PlanePatchModel(normal=vector(shape.normal), point=vector(shape.outline[0])),)
+
+
+@patch_models.register
+def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
     corners = shape.corners()
-    if isinstance(shape, PolygonShape):
-        return (PlanePatchModel(normal=vector(shape.normal), point=vector(corners[0, 0])),)
     models: list[PatchModel] = []
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Annotated, NoReturn, TypeVar
+from typing import Annotated, Any, NoReturn, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
 
 NonNegative = Annotated[float, Field(ge=0.0)]
+NonNegativeCount = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]
 
 
@@ -28,6 +30,16 @@ class Record(BaseModel):
 
 
 RecordType = TypeVar("RecordType", bound=Record)
+
+
+def with_keys(keys: Iterable[str]) -> Callable[[type[RecordType]], type[RecordType]]:
+    """Add to a class of records the keys that it does not declare itself: numbers, None where they are not known."""
+
+    def grown(record: type[RecordType]) -> type[RecordType]:
+        added: dict[str, Any] = {key: (float | None, None) for key in keys if key not in record.model_fields}
+        return create_model(record.__name__, __base__=record, __doc__=record.__doc__, **added) if added else record
+
+    return grown
 
 
 def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) -> RecordType:

@@ -11,13 +11,22 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from cadpanel.delivery.records.jsonfile import NonNegative, Record, Vector, read_json, write_json
+from cadpanel.delivery.records.jsonfile import (
+    NonNegative,
+    NonNegativeCount,
+    Record,
+    Vector,
+    read_json,
+    with_keys,
+    write_json,
+)
 from cadpanel.delivery.records.patches import PatchModel
+from cadpanel.delivery.records.settings import SettingsModel
+from cadpanel.terms.limits.catalogue import LIMITS
 
 Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
-Setting = str | int | float | tuple[str | int | float, ...]
+Setting = bool | str | int | float | tuple[str | int | float, ...]
 Positive = Annotated[float, Field(gt=0.0)]
-NonNegativeCount = Annotated[int, Field(ge=0)]
 
 
 class UnitsModel(Record):
@@ -42,58 +51,6 @@ class ReferenceModel(Record):
     seams: NonNegativeCount
     notes: tuple[str, ...] = ()
     reading: dict[str, Setting] = Field(default_factory=dict)
-
-
-class WeightsModel(Record):
-    """Weights of the paper's objective, where they were asked for instead of a tolerance."""
-
-    gap: NonNegative
-    deviation: NonNegative
-    drift: NonNegative
-
-
-class SettingsModel(Record):
-    """Everything that is needed to run the fit again; more settings may be added as further keys.
-
-    Attributes:
-        cadpanel_version: of the program that wrote the delivery.
-        feature: name of the shape feature, "auto" where each panel has the cheapest that will do.
-        composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
-        max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
-        tilt: "free" where cut planes may tilt, "fixed" where they stand upright.
-        method: name of the method.
-        gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
-        drift_along: how far a corner might move along its free edge, a share of the panel's length.
-        drift_across: the same across its free edge.
-        min_radius: tightest radius that was allowed anywhere, mm.
-        blend: which stretches were to become curved patches, where the user said so.
-        weights: the weights, or None where a tolerance was held.
-        restarts: further starts.
-        seed: of the random numbers.
-        seam_tolerance: how far the ends of two panels that meet might lie apart in the reference, mm.
-        thickness: of the sheet, mm.
-        skin_side: "outer" where the skin is the sheet's outer face.
-        step_schema: of the STEP files.
-    """
-
-    cadpanel_version: str
-    feature: str
-    composition: tuple[str, ...] | None = None
-    max_deviation: Annotated[float, Field(gt=0.0)] | None = None
-    tilt: Literal["free", "fixed"]
-    method: str
-    gap_tolerance: Annotated[float, Field(gt=0.0)] | None
-    drift_along: NonNegative
-    drift_across: NonNegative
-    min_radius: NonNegative = 0.0
-    blend: tuple[str, ...] = ()
-    weights: WeightsModel | None
-    restarts: NonNegativeCount
-    seed: int
-    seam_tolerance: NonNegative
-    thickness: NonNegative
-    skin_side: Literal["outer", "inner"]
-    step_schema: Literal["AP242", "AP214"]
 
 
 class SolveModel(Record):
@@ -183,8 +140,11 @@ class SeamModel(Record):
     max_kink: NonNegative
 
 
+@with_keys(limit.rows[-1].key for limit in LIMITS)
 class SummaryModel(Record):
     """The measures of a whole fit, mm and degrees; gaps and kink are 0 where there is no seam.
+
+    Of every limit in the catalogue there is the worst of all panels, None where a panel has nothing to limit.
 
     Attributes:
         max_corner_gap: largest distance between two corresponding corners.
@@ -198,8 +158,8 @@ class SummaryModel(Record):
         max_free_edge_drift: the same, counted across the free edges only.
         drift_along_percent, drift_across_percent: the last two as the largest share of a panel's own length, percent.
         local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
-        tolerance_met: whether every gap is within the tolerance and every drift within its limit; always true where
-            weights ruled, which have no tolerance to miss.
+        tolerance_met: whether every gap is within the tolerance and every limit is kept; always true where weights
+            ruled, which have no tolerance to miss.
     """
 
     max_corner_gap: NonNegative

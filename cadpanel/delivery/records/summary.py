@@ -8,6 +8,7 @@ from cadpanel.delivery.records.report import SummaryModel
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.verdict import keeps_limits
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.terms.limits.catalogue import LIMITS
 
 # A local fit closer than this, mm, is exact: a multiple of it would be a multiple of rounding.
 _EXACT = 1e-6
@@ -21,19 +22,17 @@ def summary(measures: Measures, local: Measures, settings: FitSettings) -> Summa
         local: of the local fit of the same feature, which its deviation is held against.
         settings: with the tolerance and the limits.
     """
-    lengths = measures.lengths
-    return SummaryModel(
-        max_corner_gap=measures.max_corner_gap,
-        max_seam_gap=measures.max_seam_gap,
-        max_kink=float(np.degrees(measures.kink.max(initial=0.0))),
-        rms_deviation=measures.overall_rms,
-        max_deviation=float(measures.max_deviation.max()),
-        hausdorff=float(measures.hausdorff.max()),
-        max_corner_drift=float(measures.drift.max()),
-        max_drift_along=float(measures.drift_along.max()),
-        max_free_edge_drift=float(measures.drift_across.max()),
-        drift_along_percent=float(100.0 * (measures.drift_along / lengths).max()),
-        drift_across_percent=float(100.0 * (measures.drift_across / lengths).max()),
-        local_rms_multiple=measures.overall_rms / local.overall_rms if local.overall_rms > _EXACT else None,
-        tolerance_met=keeps_limits(measures, settings),
-    )
+    stated = {
+        "max_corner_gap": measures.max_corner_gap,
+        "max_seam_gap": measures.max_seam_gap,
+        "max_kink": float(np.degrees(measures.kink.max(initial=0.0))),
+        "rms_deviation": measures.overall_rms,
+        "max_deviation": float(measures.max_deviation.max()),
+        "hausdorff": float(measures.hausdorff.max()),
+        "max_corner_drift": float(measures.drift.max()),
+        "max_drift_along": float(measures.drift_along.max()),
+        "max_free_edge_drift": float(measures.drift_across.max()),
+        "local_rms_multiple": measures.overall_rms / local.overall_rms if local.overall_rms > _EXACT else None,
+        "tolerance_met": keeps_limits(measures, settings),
+    }
+    return SummaryModel.model_validate(stated | {limit.rows[-1].key: limit.worst(measures) for limit in LIMITS})

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cadpanel.delivery.folder import COMPARISON, delivery_folder
-from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, ComparisonSettingsModel, write_comparison
-from cadpanel.delivery.records.from_fit import reference_record, seam_names, settings_record
+from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, write_comparison
+from cadpanel.delivery.records.from_fit import reference_record, seam_names
+from cadpanel.delivery.records.settings import comparison_settings_record
 from cadpanel.delivery.records.summary import summary
-from cadpanel.delivery.settings import SheetSettings
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
@@ -25,7 +25,7 @@ def comparison_record(reference: Reference, settings: FitSettings, results: Sequ
     """
     return ComparisonModel(
         reference=reference_record(reference),
-        settings=_settings_record(reference, settings),
+        settings=comparison_settings_record(reference, settings),
         seams=seam_names(reference),
         columns=tuple(map(_record, results)),
     )
@@ -39,21 +39,6 @@ def write_comparison_folder(comparison: ComparisonModel, out: Path, *, overwrite
     """
     with delivery_folder(out, overwrite=overwrite) as folder:
         write_comparison(comparison, folder / COMPARISON)
-
-
-def _settings_record(reference: Reference, settings: FitSettings) -> ComparisonSettingsModel:
-    whole = settings_record(reference, settings, SheetSettings())
-    return ComparisonSettingsModel(
-        cadpanel_version=whole.cadpanel_version,
-        tilt=whole.tilt,
-        gap_tolerance=whole.gap_tolerance,
-        drift_along=whole.drift_along,
-        drift_across=whole.drift_across,
-        weights=whole.weights,
-        restarts=whole.restarts,
-        seed=whole.seed,
-        seam_tolerance=whole.seam_tolerance,
-    )
 
 
 def _record(result: FitResult) -> ColumnModel:

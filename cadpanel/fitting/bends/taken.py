@@ -9,12 +9,11 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
-from cadpanel.features.feature import Feature
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.start.segmentation import curved_runs
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.polyline import arc_length, interpolate
-from cadpanel.geometry.shape import AnyShape, ConePatch, PanelShape
 from cadpanel.reference.model import PanelReference, Reference
 
 # Lines across which a panel is walked from side to side, in each of the three stretches.
@@ -23,12 +22,12 @@ LINES = 17
 MISSED = 0.2
 
 
-def taken(panel: PanelReference, shape: AnyShape) -> Array:
+def taken(panel: PanelReference, shape: Panel) -> Array:
     """(2, k + 1) where on both ends of its reference a chain's k patches begin and end, mm from side 0.
 
     Each ruling counts from the point of the reference's end that is nearest to where it ends. Empty for polygons.
     """
-    if not (isinstance(shape, PanelShape) and panel.four_sided):
+    if not (shape.four_sided and panel.four_sided):
         return np.empty((0, 0))
     found = []
     for end, corners in zip(panel.ends, shape.corners(), strict=True):
@@ -65,16 +64,16 @@ def stretches(panels: Sequence[PanelReference], blends: Sequence[Blend]) -> Arra
     return found
 
 
-def missed_blend(panel: PanelReference, shape: AnyShape, blends: Sequence[Blend]) -> tuple[Array, Array] | None:
+def missed_blend(panel: PanelReference, shape: Panel, blends: Sequence[Blend]) -> tuple[Array, Array] | None:
     """Where a panel's curved patches were told to begin and end and where they do, each (2, 2) as in `stretches`.
 
     None where nothing was told, or all comes within MISSED of the stretch's width. A blend says which part of the
     drawing the curved patches are held to: where their rulings end is for the fit.
     """
     (asked,) = stretches([panel], blends)
-    if np.isnan(asked).any() or not isinstance(shape, PanelShape):
+    if np.isnan(asked).any():
         return None
-    ((start, stop),) = curved_runs([isinstance(patch, ConePatch) for patch in shape.patches])
+    ((start, stop),) = curved_runs([patch.kind != "plane" for patch in shape.patches])
     became = taken(panel, shape)[:, [start, stop]]
     near = np.abs(became - asked) <= MISSED * np.diff(asked, axis=1)
     return None if near.all() else (asked, became)
@@ -92,15 +91,14 @@ def check_blends(reference: Reference, features: Sequence[PanelFeature], blends:
             raise SettingsError(f"there is no panel '{blend.panel}' in '{reference.source}' for the blend '{blend}'")
     meant = {blend.panel for blend in blends}
     for panel, feature in zip(reference.panels, features, strict=True):
-        if (None in meant or panel.name in meant) and not (isinstance(feature, Feature) and has_blend(feature)):
-            name = feature.name if isinstance(feature, Feature) else "flat polygon"
+        if (None in meant or panel.name in meant) and not has_blend(feature):
             raise SettingsError(
-                f"panel '{panel.name}' is to be a {name}, which is no single bend between two flanges: a blend has "
-                "no meaning there"
+                f"panel '{panel.name}' is to be a {feature.name}, which is no single bend between two flanges: a "
+                "blend has no meaning there"
             )
 
 
-def has_blend(feature: Feature) -> bool:
+def has_blend(feature: PanelFeature) -> bool:
     """Whether a feature is two flanges with one stretch of curved patches between them."""
     runs = curved_runs(feature.curved)
     return len(runs) == 1 and runs[0][0] > 0 and runs[0][1] < len(feature.curved)

@@ -10,17 +10,17 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.measures.deviation import deviations
 from cadpanel.fitting.measures.edges import alike, edge_curves, edges_of
 from cadpanel.geometry.end_curves import closest
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import PanelReference, Reference
 
 
-def outline_distances(shapes: Sequence[AnyShape], reference: Reference) -> Array:
+def outline_distances(shapes: Sequence[Panel], reference: Reference) -> Array:
     """(panels, q) distance of the reference's outline to the skin's patches, mm."""
     lines = _outlines(reference)
     return np.abs(deviations(shapes, lines.reshape(len(lines), -1, 3)))
 
 
-def overhang(shapes: Sequence[AnyShape], reference: Reference) -> Array:
+def overhang(shapes: Sequence[Panel], reference: Reference) -> Array:
     """(panels,) how far the skin's and the reference's boundaries reach beyond each other, mm.
 
     Inside both outlines the two surfaces are apart by the deviation; what the Hausdorff distance adds happens at the

@@ -10,15 +10,15 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.measures.edges import curved, round_numbers
 from cadpanel.geometry.cone import cone_distance, plane_distance
 from cadpanel.geometry.frames import rotate_about
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patch_under import patch_under
-from cadpanel.geometry.shape import AnyShape, PanelShape
 from cadpanel.geometry.vectors import cross
 
 # Panels worked on together: their points and distances stay in the processor's cache.
 _CHUNK = 64
 
 
-def deviations(shapes: Sequence[AnyShape], points: Array) -> Array:
+def deviations(shapes: Sequence[Panel], points: Array) -> Array:
     """(panels, m) signed distance of points (panels, m, 3) to the skins of their panels, positive outside.
 
     To the whole surface of the patch between whose bounding rulings the foot point falls: trimming does not count here.
@@ -34,7 +34,7 @@ def deviations(shapes: Sequence[AnyShape], points: Array) -> Array:
     return found
 
 
-def _distances(shapes: Sequence[AnyShape], kinds: Sequence[bool], points: Array) -> Array:
+def _distances(shapes: Sequence[Panel], kinds: Sequence[bool], points: Array) -> Array:
     """The same for panels whose patches are of the same kinds, each counted from the middle of its own points."""
     middle = points.mean(axis=1)
     x = np.ascontiguousarray(np.moveaxis(points - middle[:, None], 2, 0))
@@ -66,12 +66,10 @@ def middle_patch(kinds: Sequence[bool]) -> int:
     return min(round_ones or range(len(kinds)), key=lambda i: abs(i - middle))
 
 
-def _rulings(shape: AnyShape) -> tuple[Array, Array, Array]:
-    """Points, directions and normals (k + 1, 3) of a chain's rulings; where there is one patch of its first, once."""
-    if isinstance(shape, PanelShape):
-        all_ = slice(1 if len(shape.patches) == 1 else None)
-        return shape.points[all_], shape.directions[all_], shape.normals[all_]
-    return shape.outline[:1], np.zeros((1, 3)), shape.normal[None]  # a plane's distance asks for no direction
+def _rulings(shape: Panel) -> tuple[Array, Array, Array]:
+    """Points, directions and normals (k + 1, 3) of a panel's rulings; where there is one patch of its first, once."""
+    p, t, n = shape.rulings()
+    return (p[:1], t[:1], n[:1]) if len(shape.patches) == 1 else (p, t, n)
 
 
 def _half_way(p: Array, t: Array, n: Array, radius: Array, half_angle: Array, sweep: Array) -> tuple[Array, Array]:

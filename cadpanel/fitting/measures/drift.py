@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.fitting.measures.edges import alike
-from cadpanel.geometry.shape import AnyShape, PanelShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.vectors import dot, norm
 from cadpanel.reference.model import Reference
 from cadpanel.reference.strip import strip_of
@@ -31,12 +31,12 @@ class Drifts:
     across: Array
 
 
-def drifts(shapes: Sequence[AnyShape], reference: Reference) -> Drifts:
+def drifts(shapes: Sequence[Panel], reference: Reference) -> Drifts:
     """The drift of all panels."""
     found = Drifts(*np.zeros((3, len(shapes))))
     for members in alike(shapes):
         corners = np.array([shapes[i].corners() for i in members])
-        measured = _of_chains if isinstance(shapes[members[0]], PanelShape) else _of_polygons
+        measured = _of_chains if shapes[members[0]].four_sided else _of_polygons
         found.whole[members], found.along[members], found.across[members] = measured(corners, reference, members)
     return found
 

@@ -24,7 +24,7 @@ from cadpanel.fitting.measures.deviation import deviations
 from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.seams import along_seams, corner_gaps
 from cadpanel.fitting.samples import SampleArrays
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
 
 
@@ -44,6 +44,7 @@ class Measures:
             whose ends cannot be told from its sides the whole drift.
         drift_across: (panels,) of the outer corner that drifted most across its free edge, mm.
         lengths: (panels,) the panels' lengths, mm.
+        shapes: the panels that were measured, for those limits that hold what is to be seen of a panel alone.
     """
 
     corner_gaps: tuple[Array, ...]
@@ -57,6 +58,7 @@ class Measures:
     drift_along: Array
     drift_across: Array
     lengths: Array
+    shapes: tuple[Panel, ...]
 
     @property
     def widest_corners(self) -> Array:
@@ -74,7 +76,7 @@ class Measures:
         return float(self.seam_gap.max(initial=0.0))
 
 
-def measure(shapes: Sequence[AnyShape], reference: Reference) -> Measures:
+def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
     """Measure fitted panels against what they approximate; one shape a panel, in the reference's order."""
     samples = SampleArrays.of(reference)
     distance, weight = deviations(shapes, samples.points), samples.weights
@@ -93,16 +95,17 @@ def measure(shapes: Sequence[AnyShape], reference: Reference) -> Measures:
         drift_along=drifted.along,
         drift_across=drifted.across,
         lengths=np.array([panel.length for panel in reference.panels]),
+        shapes=tuple(shapes),
     )
 
 
-def largest_deviations(shapes: Sequence[AnyShape], reference: Reference) -> Array:
+def largest_deviations(shapes: Sequence[Panel], reference: Reference) -> Array:
     """(panels,) largest distance of samples and outlines to the patches, mm."""
     samples = SampleArrays.of(reference)
     return _largest(shapes, reference, deviations(shapes, samples.points), samples.weights)
 
 
-def _largest(shapes: Sequence[AnyShape], reference: Reference, distance: Array, weight: Array) -> Array:
+def _largest(shapes: Sequence[Panel], reference: Reference, distance: Array, weight: Array) -> Array:
     sampled = np.max(np.abs(distance) * (weight > 0.0), axis=1)
     largest: Array = np.maximum(sampled, outline_distances(shapes, reference).max(axis=1))
     return largest

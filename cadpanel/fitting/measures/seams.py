@@ -11,14 +11,14 @@ from cadpanel.arrays import Array
 from cadpanel.features.panel_edges import Edge
 from cadpanel.fitting.measures.edges import corners_along, edge_curves, edges_of
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
-from cadpanel.geometry.shape import AnyShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import Seam
 
 _Pieces = tuple[bool, ...]
 
 
-def along_seams(shapes: Sequence[AnyShape], seams: Sequence[Seam]) -> tuple[Array, Array]:
+def along_seams(shapes: Sequence[Panel], seams: Sequence[Seam]) -> tuple[Array, Array]:
     """(seams,) gaps along whole seams in mm, and kinks in radians."""
     gaps, kinks = np.zeros(len(seams)), np.zeros(len(seams))
     met = [_Met.of(shapes, seam) for seam in seams]
@@ -32,7 +32,7 @@ def along_seams(shapes: Sequence[AnyShape], seams: Sequence[Seam]) -> tuple[Arra
     return gaps, kinks
 
 
-def corner_gaps(shapes: Sequence[AnyShape], seams: Sequence[Seam]) -> tuple[Array, ...]:
+def corner_gaps(shapes: Sequence[Panel], seams: Sequence[Seam]) -> tuple[Array, ...]:
     """For each seam the gaps (corners,) at the corners that meet, in the order of its first panel, mm.
 
     All corners meet where both edges have the same pieces, else only the two outermost.
@@ -51,14 +51,14 @@ class _Met:
     reversed: bool
 
     @staticmethod
-    def of(shapes: Sequence[AnyShape], seam: Seam) -> _Met:
+    def of(shapes: Sequence[Panel], seam: Seam) -> _Met:
         """The edges of a seam as the panels have them."""
         order = (0, 1) if seam.panels[0] < seam.panels[1] else (1, 0)
         panels, edges = ((which[order[0]], which[order[1]]) for which in (seam.panels, seam.edges))
         first, second = (edges_of(shapes[panel])[edge] for panel, edge in zip(panels, edges, strict=True))
         return _Met(panels, edges, first, second, seam.reversed)
 
-    def corner_gaps(self, shapes: Sequence[AnyShape]) -> Array:
+    def corner_gaps(self, shapes: Sequence[Panel]) -> Array:
         """(corners,) mm."""
         one, other = (corners_along(shapes[p], e) for p, e in zip(self.panels, (self.first, self.second), strict=True))
         pieces = self.second.curved
@@ -69,5 +69,5 @@ class _Met:
         return norm(one - other)
 
 
-def _edges(shapes: Sequence[AnyShape], met: Sequence[_Met], side: int, centre: Array) -> EndCurves:
+def _edges(shapes: Sequence[Panel], met: Sequence[_Met], side: int, centre: Array) -> EndCurves:
     return edge_curves([shapes[one.panels[side]] for one in met], [one.edges[side] for one in met], centre)

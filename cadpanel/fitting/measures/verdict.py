@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
 
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.limits.limit import Limit
 
 
 def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
-    """Whether every gap, drift and deviation is within its limit; with weights only a deviation has one to miss."""
+    """Whether every gap, deviation and limit is kept; with weights only a deviation has one to miss."""
     if settings.max_deviation is not None and measures.max_deviation.max() > settings.max_deviation:
         return False
     if settings.weights is not None:
@@ -17,6 +19,12 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
     return bool(
         measures.max_corner_gap <= settings.gap_tolerance
         and measures.max_seam_gap <= settings.gap_tolerance
-        and np.all(measures.drift_along <= settings.drift_along * measures.lengths)
-        and np.all(measures.drift_across <= settings.drift_across * measures.lengths)
+        and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
+
+
+def limits_of(settings: FitSettings) -> Iterator[tuple[Limit, float]]:
+    """Every limit with what the settings allow."""
+    allowed = settings.allowed
+    for limit in LIMITS:
+        yield limit, allowed[limit.name]

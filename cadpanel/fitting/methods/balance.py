@@ -8,14 +8,9 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.methods.method import Fitted, Progress
 from cadpanel.fitting.objective import Frozen, Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
-from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.constrained import Schedule, hold_tolerances
-from cadpanel.terms.limits.corner_drift import DriftLimit
-from cadpanel.terms.limits.flange_width import WidthLimit
-from cadpanel.terms.limits.min_radius import RadiusLimit
 from cadpanel.terms.state import State
-
-Limit = DriftLimit | RadiusLimit | WidthLimit
+from cadpanel.terms.term import HeldTerm
 
 # Gaps and drifts are held a little inside what the user allows, so that rounding in a file cannot break the promise.
 MARGIN = 1e-3
@@ -27,11 +22,6 @@ _MOST_SHARE = 0.01
 AIM = 0.95
 WHOLE = Schedule(aim=AIM)
 FINISH = Schedule(aim=AIM, balance=10)
-
-
-def drift_and_shop_limits(problem: Problem, settings: FitSettings) -> list[Limit]:
-    """What panels may not do however wide the gaps are, a little inside what the user allows."""
-    return [*problem.drift_limits(settings, MARGIN), *problem.shop_limits(settings)]
 
 
 def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
@@ -55,7 +45,7 @@ class _Walker:
 class _HeldTerm:
     """A held term as the solver sees it: by the model's unknowns."""
 
-    def __init__(self, walker: _Walker, term: SeamTerm | Limit) -> None:
+    def __init__(self, walker: _Walker, term: HeldTerm) -> None:
         self.hold = term.hold
         self._walker, self._term = walker, term
 
@@ -66,7 +56,7 @@ class _HeldTerm:
 def balanced(
     problem: Problem,
     model: Objective | Frozen,
-    held: Sequence[SeamTerm | Limit],
+    held: Sequence[HeldTerm],
     start: Array,
     *,
     local: Array,

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, Limit, balanced, drift_and_shop_limits, seam_terms
+from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, balanced, seam_terms
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
@@ -18,6 +18,7 @@ from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.stop import Stop
+from cadpanel.terms.term import HeldTerm
 
 # How often seams are tightened, and up to which excess that is worth trying. Arcs are held by their distances from the
 # other arc's cone and cut plane; on gently curved panels these meet at a small angle once the cut leans far, and what
@@ -28,7 +29,7 @@ _NEARLY = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Concurrent(Method):
-    """The smallest deviation at which every gap and drift stays within its tolerance."""
+    """The smallest deviation at which every gap stays within its tolerance and every limit is kept."""
 
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
@@ -51,7 +52,7 @@ def _hold_seams(
     problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
 ) -> Fitted:
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
-    held: list[SeamTerm | Limit] = [*gaps, *drift_and_shop_limits(problem, settings)]
+    held: list[HeldTerm] = [*gaps, *problem.limits(settings, MARGIN)]
     model = Objective(problem, [problem.deviation, *held], coupled=True)
     found = balanced(problem, model, held, start, local=local, progress=progress)
     iterations = found.iterations
@@ -74,9 +75,9 @@ def _hold_seams(
 
 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
-    """RMS deviation, and a large penalty for gaps and drifts that do not hold."""
+    """RMS deviation, and a large penalty for gaps and limits that do not hold."""
     state = problem.state(unknowns)
-    held = [*seam_terms(problem, settings.gap_tolerance), *problem.drift_limits(settings, 0.0)]
+    held: list[HeldTerm] = [*seam_terms(problem, settings.gap_tolerance), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = float(np.sqrt(2.0 * problem.deviation.cost(state).sum() / problem.panels))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.methods.balance import balanced, drift_and_shop_limits
+from cadpanel.fitting.methods.balance import MARGIN, balanced
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.objective import Frozen, Objective
 from cadpanel.fitting.problem import Problem
@@ -19,8 +19,8 @@ class TwoStage(Method):
     """Local fits moved about, and their corners placed anew, to close the gaps while their shapes are frozen.
 
     The industry's way, given its best chance: all panels move at once, cuts may tilt as the feature allows, and a
-    corner gap of 1 mm counts as much as 1 mm of deviation all over a panel, or what the user's weights say. Corners
-    keep within the drift limits.
+    corner gap of 1 mm counts as much as 1 mm of deviation all over a panel, or what the user's weights say. All
+    limits are kept.
     """
 
     def fit(
@@ -32,7 +32,7 @@ class TwoStage(Method):
         gaps = problem.corner_gaps(settings.gap_tolerance)
         for gap in gaps:
             gap.hold.weight[:] = weights.gap / weights.deviation
-        limits = drift_and_shop_limits(problem, settings)
+        limits = problem.limits(settings, MARGIN)
         everything = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
         model = Frozen(everything, problem.placement_unknowns())
         found = balanced(problem, model, limits, local, local=local, progress=progress)

@@ -12,6 +12,7 @@ from cadpanel.fitting.objective import Objective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
+from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.term import Term
 
 # Steps at most from one start.
@@ -30,7 +31,7 @@ class Weighted(Method):
     ) -> Fitted:
         """Fit all panels from their local fits, and from as many restarts as are asked for."""
         del progress
-        model = weighted_objective(problem, settings.weights or Weights())
+        model = weighted_objective(problem, settings.weights or Weights(), settings)
 
         def solve(start: Array) -> Fitted:
             solution = levenberg_marquardt(model, start, Stopping(iterations=_ITERATIONS))
@@ -39,14 +40,21 @@ class Weighted(Method):
         return best_of_starts(solve, lambda unknowns: float(model.cost(unknowns).sum()), starts[0], settings)
 
 
-def weighted_objective(problem: Problem, weights: Weights) -> Objective:
-    """The paper's objective (3) with a weak pull on the corners, relative to the deviation's weight."""
+def weighted_objective(problem: Problem, weights: Weights, settings: FitSettings) -> Objective:
+    """The paper's objective (3) with a weak pull on the corners, relative to the deviation's weight.
+
+    Args:
+        problem: the panels.
+        weights: of gaps, deviation and drift.
+        settings: with the limits that no weight is given for.
+    """
     terms: list[Term] = [problem.deviation]
     for gap in problem.corner_gaps(1.0):
         gap.hold.weight[:] = weights.gap / weights.deviation
         terms.append(gap)
-    for limit in problem.drift_limits(FitSettings(), 0.0):
-        limit.hold.weight[:] = weights.drift / weights.deviation
-        terms.append(limit)
-    terms += problem.shop_limits(FitSettings())
+    for limit in LIMITS:
+        for held in limit.held(problem, settings.allowed, 0.0):
+            if limit.weight is not None:
+                held.hold.weight[:] = getattr(weights, limit.weight) / weights.deviation
+            terms.append(held)
     return Objective(problem, terms, coupled=True)

@@ -13,15 +13,13 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.features.feature import Feature
-from cadpanel.features.layout import Layout
-from cadpanel.features.rulings import PanelFeature
+from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
-from cadpanel.fitting.start.frames import Frames, reframe
-from cadpanel.fitting.start.polygons import start_polygons
-from cadpanel.fitting.start.segmentation import curved_runs, cut_profile
+from cadpanel.fitting.start.frames import Frames, Given, reframe
+from cadpanel.fitting.start.segmentation import ambiguous, cut_profile
 from cadpanel.geometry.vectors import cross, dot
-from cadpanel.reference.model import PanelReference, Reference
+from cadpanel.reference.model import PanelReference
 from cadpanel.reference.strip import end_plane
 from cadpanel.reference.suitability import check_corners, check_fold
 
@@ -35,66 +33,6 @@ _LEAST_FOLD = np.radians(2.0)
 _STEEPEST = 0.3
 # The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
 _ASTRAY = np.cos(np.radians(40.0))
-
-
-@dataclass(frozen=True, slots=True)
-class Start:
-    """Where the fit begins.
-
-    Attributes:
-        origins: (panels, 3) a point on the middle of each panel, mm.
-        axes: (panels, 3, 3) columns b, t, n: across the panel, along it, outwards.
-        unknowns: arrays (panels, size) in the layout's rows, lengths in units of `length`: the best start and, where a
-            feature has curved patches side by side, another one, as it is easy to cut them in the wrong place.
-        length: mm, the mean length of a panel.
-    """
-
-    origins: Array
-    axes: Array
-    unknowns: tuple[Array, ...]
-    length: float
-
-
-def start(
-    reference: Reference, layout: Layout, samples: SampleArrays, length: float, stretches: Array | None = None
-) -> Start:
-    """First values for all panels.
-
-    Args:
-        reference: what is to be approximated.
-        layout: the panels' features, in units of `length`.
-        samples: those of the reference.
-        length: mm.
-        stretches: (panels, 2, 2) where on both ends the curved patches are to begin and end, mm from side 0; nan, or
-            None, where the normals are to tell.
-
-    Raises:
-        PanelError: a panel has no fold, or not the four corners, that its feature asks for.
-    """
-    origins, axes = np.zeros((layout.panels, 3)), np.zeros((layout.panels, 3, 3))
-    held = np.full((layout.panels, 2, 2), np.nan) if stretches is None else stretches
-    starts = [np.zeros((layout.panels, layout.size))]
-    if any(_ambiguous(group.feature) for group in layout.groups):
-        starts.append(starts[0].copy())
-    for group in layout.groups:
-        panels = [reference.panels[i] for i in group.panels]
-        if isinstance(group.feature, Feature):
-            _check(panels, reference.source, group.feature)
-            found = _start_chains(
-                panels, group.feature, samples.take(group.panels), length, held[group.panels], ways=len(starts)
-            )
-        else:
-            found = start_polygons(panels, samples.take(group.panels), length)
-        origins[group.panels], axes[group.panels] = found.origins, found.axes
-        for way, unknowns in enumerate(starts):
-            values = found.values[min(way, len(found.values) - 1)]
-            unknowns[group.panels, : len(group.feature.free)] = values[:, group.feature.free]
-    return Start(origins, axes, tuple(starts), length)
-
-
-def _ambiguous(feature: PanelFeature) -> bool:
-    """Whether curved patches follow each other."""
-    return any(stop - start_ > 1 for start_, stop in curved_runs(feature.curved))
 
 
 def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
@@ -124,22 +62,20 @@ class _Ends:
     sweeps: Array
 
 
-def _start_chains(
-    panels: Sequence[PanelReference],
-    feature: Feature,
-    samples: SampleArrays,
-    length: float,
-    stretches: Array,
-    *,
-    ways: int,
-) -> Frames:
-    """Frames and all numbers of the chains; `ways` is 2 where curved patches may be cut in another way, too."""
-    axis = _axes(panels, samples)
+def start_chains(feature: Feature, given: Given) -> Frames:
+    """Frames and all numbers of chains, cut in another way, too, where their curved patches follow each other.
+
+    Raises:
+        PanelError: a panel has no fold, or not the four corners, that its feature asks for.
+    """
+    panels, length = given.panels, given.length
+    _check(panels, given.source, feature)
+    axis = _axes(panels, given.samples)
     whole = np.array([panel.corners for panel in panels])
     found: Frames | None = None
-    for way in range(ways if _ambiguous(feature) else 1):
+    for way in range(given.ways if ambiguous(feature.curved) else 1):
         origins, axes, values = _roll(
-            _cut_ends(panels, feature, axis, stretches, even=way > 0), panels, feature, length
+            _cut_ends(panels, feature, axis, given.stretches, even=way > 0), panels, feature, length
         )
         if found is None:
             found = Frames(origins, axes, [])
@@ -147,7 +83,7 @@ def _start_chains(
             reframe(feature, values, (origins - found.origins) / length, axes, found.axes)
         values = _held(feature, values)
         corners = np.einsum("pesx,pxa->pesa", whole - found.origins[:, None, None], found.axes)
-        _lay_flanges(corners / length, feature, values)
+        _lay_flanges(corners / length, feature, values, panels)
         values = _held(feature, values)
         _lay_cuts(panels, feature, found, length, values)
         found.values.append(_held(feature, values))
@@ -165,18 +101,37 @@ def _roll(ends: _Ends, panels: Sequence[PanelReference], feature: Feature, lengt
     distance = np.linalg.norm(ends.points[:, 1] - ends.points[:, 0], axis=-1)
     values = np.zeros((len(panels), len(feature.numbers)))
     for i, curved in enumerate(feature.curved):
-        at = feature.patch_slice(i).start
         widening = (ends.widths[:, 1, i] - ends.widths[:, 0, i]) / (0.5 * (distance[:, i] + distance[:, i + 1]))
         width = ends.widths[:, :, i].mean(axis=1)
         if curved:
             sweep = ends.sweeps[:, i]
-            values[:, at] = width / sweep / length
-            values[:, at + 1] = np.clip(np.arctan(widening / sweep), -_STEEPEST, _STEEPEST)
-            values[:, at + 2] = sweep
+            half_angle = np.clip(np.arctan(widening / sweep), -_STEEPEST, _STEEPEST)
+            dimensions = np.stack([width / sweep / length, half_angle, sweep], axis=1)
         else:
-            values[:, at] = width / length
-            values[:, at + 1] = -np.arctan(widening)
+            dimensions = np.stack([width / length, -np.arctan(widening)], axis=1)
+        values[:, feature.patch_slice(i)] = _numbers_for(feature, i, dimensions, panels)
     return origins, axes, values
+
+
+def _numbers_for(feature: Feature, patch: int, dimensions: Array, panels: Sequence[PanelReference]) -> Array:
+    """(n, numbers) the numbers of one patch with these dimensions (n, d).
+
+    Raises:
+        PanelError: a patch of a user's own has no numbers for the dimensions that a panel asks for.
+    """
+    numbers = feature.patches[patch].numbers_for(dimensions)
+    for panel, own, wanted in zip(panels, numbers, dimensions, strict=True):
+        if not np.isfinite(own).all():
+            told = ", ".join(
+                f"{what} {value:.4g}"
+                for what, value in zip(DIMENSIONS[feature.patches[patch].kind], wanted, strict=True)
+            )
+            raise PanelError(
+                panel.name,
+                f"patch {patch} of '{feature.name}' has no numbers for what the panel asks of it ({told}, lengths in "
+                "panel lengths): let its 'numbers_for' give those nearest, or choose another feature",
+            )
+    return numbers
 
 
 def _held(feature: Feature, values: Array) -> Array:
@@ -251,7 +206,7 @@ def _at(lines: Array, places: Array) -> Array:
     return np.asarray((1.0 - share) * before + share * after)
 
 
-def _lay_flanges(corners: Array, feature: Feature, values: Array) -> None:
+def _lay_flanges(corners: Array, feature: Feature, values: Array, panels: Sequence[PanelReference]) -> None:
     """Give outer flanges the width and the turn that bring their free edges through the corners (n, 2, 2, 3)."""
     edges = walk(feature, values, derivatives=False).edges
     last = len(feature.patches) - 1
@@ -263,9 +218,8 @@ def _lay_flanges(corners: Array, feature: Feature, values: Array) -> None:
         x, y = dot(out, b), dot(out, t)
         slope = (x[:, 1] - x[:, 0]) / (y[:, 1] - y[:, 0])
         way = 1.0 if side == 1 else -1.0
-        where = feature.patch_slice(patch).start
-        values[:, where] = way * (x[:, 0] - slope * y[:, 0])
-        values[:, where + 1] = -way * np.arctan(slope)
+        dimensions = np.stack([way * (x[:, 0] - slope * y[:, 0]), -way * np.arctan(slope)], axis=1)
+        values[:, feature.patch_slice(patch)] = _numbers_for(feature, patch, dimensions, panels)
 
 
 def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames, length: float, values: Array) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.samples import SampleArrays
+from cadpanel.reference.model import PanelReference
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,28 @@ class Frames:
     origins: Array
     axes: Array
     values: list[Array]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Given:
+    """What the starts of n panels of one feature are told by.
+
+    Attributes:
+        panels: of the reference.
+        source: the reference's file.
+        samples: the panels' own.
+        length: mm, the solver's.
+        stretches: (n, 2, 2) where on both ends the curved patches are to begin and end, mm from side 0; nan where the
+            normals are to tell.
+        ways: how many starts are wanted of a feature whose patches are easy to cut in the wrong place.
+    """
+
+    panels: Sequence[PanelReference]
+    source: str
+    samples: SampleArrays
+    length: float
+    stretches: Array
+    ways: int
 
 
 def reframe(feature: Feature, values: Array, shift: Array, axes: Array, into: Array) -> None:
@@ -50,6 +75,8 @@ def reframe(feature: Feature, values: Array, shift: Array, axes: Array, into: Ar
     )
     values[:, 0], values[:, 1] = p[:, 0], p[:, 2]
     values[:, 2:5] = 2.0 * skew / (1.0 + trace)[:, None]
-    for i, curved in enumerate(feature.curved):
-        at = feature.patch_slice(i).start
-        values[:, at] += slide * np.tan(values[:, at + 1]) * (1.0 if curved else -1.0)
+    for i, patch in enumerate(feature.patches):
+        own = feature.patch_slice(i)
+        dimensions = patch.dimensions(values[:, own]).values.copy()
+        dimensions[:, 0] += slide * np.tan(dimensions[:, 1]) * (1.0 if feature.curved[i] else -1.0)
+        values[:, own] = patch.numbers_for(dimensions)

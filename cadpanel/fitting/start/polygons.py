@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from cadpanel.fitting.samples import SampleArrays
-from cadpanel.fitting.start.frames import Frames
+from cadpanel.errors import PanelError
+from cadpanel.features.polygon import Polygon
+from cadpanel.fitting.start.frames import Frames, Given
 from cadpanel.geometry.vectors import cross
-from cadpanel.reference.model import PanelReference
 
 
-def start_polygons(panels: Sequence[PanelReference], samples: SampleArrays, length: float) -> Frames:
-    """Frames and numbers (n, 3 + 2 corners) of panels with equally many corners."""
+def start_polygons(feature: Polygon, given: Given) -> Frames:
+    """Frames and numbers (n, 3 + 2 corners) of panels with as many corners as their feature.
+
+    Raises:
+        PanelError: a panel has fewer or more.
+    """
+    panels, samples, length = given.panels, given.samples, given.length
+    for panel in panels:
+        if len(panel.edges) != feature.corner_count:
+            raise PanelError(
+                panel.name,
+                f"it has {len(panel.edges)} corners in '{given.source}', and its feature '{feature.name}' "
+                f"{feature.corner_count}: choose one with as many",
+            )
     weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
     origins = np.einsum("pm,pmx->px", weights, samples.points)
     off = samples.points - origins[:, None]

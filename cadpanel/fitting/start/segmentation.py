@@ -98,6 +98,11 @@ def curved_runs(curved: Sequence[bool]) -> list[tuple[int, int]]:
     return runs
 
 
+def ambiguous(curved: Sequence[bool]) -> bool:
+    """Whether curved patches follow each other, such that normals tell only roughly where they part."""
+    return any(stop - start > 1 for start, stop in curved_runs(curved))
+
+
 def _costs(turned: Array, curved: bool, least: int) -> Array:
     """(n, q, q) sums of squares about the mean or the best line of the places j to k; infinite where too short."""
     count, places = turned.shape

@@ -6,74 +6,95 @@ two directions therefore have limits of their own. Without them the gap can be g
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cadpanel.arrays import Array, BoolArray, IntArray
-from cadpanel.solver.blocks import Normal
+from cadpanel.arrays import Array
 from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.outline import Outline
 from cadpanel.terms.rows import Rows, add_rows
 from cadpanel.terms.state import State, slopes
+from cadpanel.terms.term import HeldTerm
+
+if TYPE_CHECKING:
+    from cadpanel.solver.blocks import Normal  # SciPy takes its time, and settings ask limits for their ranges
 
 # Weight of a squared drift against the mean squared deviation: 100 mm of drift count like 1 mm of deviation.
 LEAST_PULL = 1e-4
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limited:
-    """Which corners are limited in one direction, and what of their drift counts.
+class CornerDrift(Limit):
+    """What both directions have in common: shares of the panel's length, which the paper's objective weighs."""
 
-    Attributes:
-        corners: (panels, L) their places among the panels' corners.
-        part: (panels, L, d, 3) rows that take from a drift what is limited; zero where a panel has fewer corners.
-    """
+    weight = "drift"
+    percent = True
+    least, most = 1e-4, 0.5
+    remedy = "more drift"
+    way: str
+    """The direction in a sentence, "along" or "across"."""
 
-    corners: IntArray
-    part: Array
-
-    def take(self, panels: IntArray) -> Limited:
-        """Those of some panels, as many to a panel as they need."""
-        part = self.part[panels]
-        held = part.any(axis=(0, 2, 3))
-        return Limited(corners=self.corners[panels][:, held], part=part[:, held])
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Outline:
-    """The reference's corners as the drift limits see them.
-
-    Inside the fold a panel has corners too, where its flanges begin. Where across the fold they lie is a matter of the
-    fit, but along the strip they belong on the reference's end like the outer ones: otherwise a cut plane could tilt
-    far out of the end while its outer corners stay. How far they are from the end is told in the direction of the
-    strip, so that a corner may slide along an end that runs askew.
-
-    Attributes:
-        corners: (panels, corners, 3) points on the reference's outline in the panels' own frames and the solver's
-            length: its corners, and between them points on its ends.
-        along: all corners, one number each: the drift along the strip.
-        across: outer corners, three numbers each: the drift across the free edge. A panel whose ends cannot be told
-            from its sides has only these, and they are its whole drift.
-        sided: (panels,) whether ends can be told from sides.
-    """
-
-    corners: Array
-    along: Limited
-    across: Limited
-    sided: BoolArray
-
-    def take(self, panels: IntArray) -> Outline:
-        """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""
-        along, across = self.along.take(panels), self.across.take(panels)
-        count = 1 + max(int(limited.corners.max(initial=0)) for limited in (along, across))
-        return Outline(corners=self.corners[panels, :count], along=along, across=across, sided=self.sided[panels])
-
-    def drift(self, state: State) -> Array:
-        """(panels, corners, 3) from the reference's corners to the panels'."""
-        return state.corners.position - self.corners
+    def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
+        """See `Limit.missed`."""
+        return (
+            f"the drift limits are not met: panel '{panel}' leaves its outline by {value * length:.1f} mm {self.way} "
+            f"its free edges, where {allowed * length:.1f} mm are allowed"
+        )
 
 
-class DriftLimit:
+class DriftAlong(CornerDrift):
+    """Of all corners along the strip; of a panel whose ends cannot be told from its sides the whole drift."""
+
+    name = "drift_along"
+    what = "drift along the strip"
+    way = "along"
+    default = 0.05
+    help = "How far corners may move along the strip, of the length."
+    rows = (
+        Row("max_drift_along", "Largest drift along, mm", "{:.1f}"),
+        Row("drift_along_percent", "  of the panel's length", "{:.2f} %"),
+    )
+
+    def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
+        """See `Limit.held`."""
+        return [DriftTerm(panels.outline, _lengths(panels, allowed, margin, self.name), across=False)]
+
+    def measure(self, measured: Measured) -> Array:
+        """See `Limit.measure`."""
+        return np.asarray(measured.drift_along / measured.lengths)
+
+
+class DriftAcross(CornerDrift):
+    """Of outer corners across their free edges."""
+
+    name = "drift_across"
+    what = "drift across the free edges"
+    way = "across"
+    default = 0.02
+    help = "How far corners may move across it, which people see."
+    rows = (
+        Row("max_free_edge_drift", "Largest drift across, mm", "{:.1f}"),
+        Row("drift_across_percent", "  of the panel's length", "{:.2f} %"),
+    )
+
+    def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
+        """See `Limit.held`; where ends cannot be told from sides it is the whole drift that the first limit allows."""
+        across, along = (_lengths(panels, allowed, margin, name) for name in (self.name, DriftAlong.name))
+        return [DriftTerm(panels.outline, np.where(panels.outline.sided, across, along), across=True)]
+
+    def measure(self, measured: Measured) -> Array:
+        """See `Limit.measure`."""
+        return np.asarray(measured.drift_across / measured.lengths)
+
+
+def _lengths(panels: Panels, allowed: Mapping[str, float], margin: float, name: str) -> Array:
+    """(panels,) how far corners may move, in units of the solver's length."""
+    return np.asarray((1.0 - margin) * allowed[name] * panels.lengths)
+
+
+class DriftTerm:
     """Holds the drift of corners within a limit: of all corners along the strip, or of outer ones across free edges.
 
     Even where the limit is far away a weak pull towards the reference's corners stays: what neither deviation nor gaps

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
-from cadpanel.solver.blocks import Normal
 from cadpanel.solver.tolerance_weights import Hold
 from cadpanel.terms.rows import Rows, add_rows
 from cadpanel.terms.state import State
+
+if TYPE_CHECKING:
+    from cadpanel.solver.blocks import Normal  # SciPy takes its time, and settings ask limits for their ranges
 
 # The held number may be as large as this share of the least length, so that much more is asked for.
 _SPARE = 0.1
@@ -20,7 +23,7 @@ _SPARE = 0.1
 _FIRST_WEIGHT = 1.0
 
 
-class LackLimit(ABC):
+class LackTerm(ABC):
     """Holds lengths of the panels of one group above a least one; a kind of length is one subclass."""
 
     def __init__(self, group: Group, place: int, panels: int, least: float, count: int) -> None:

@@ -6,21 +6,76 @@ is least at a corner, so that is where it is held.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.errors import SettingsError
+from cadpanel.features.distance import patch_outer
 from cadpanel.features.layout import Group
-from cadpanel.features.rulings import Points, Walk
+from cadpanel.features.patch_checks import greatest_radius
+from cadpanel.features.rulings import PanelFeature, Points, Walk
 from cadpanel.geometry.frames import point_velocity
 from cadpanel.geometry.vectors import dot
-from cadpanel.terms.limits.lower_bound import LackLimit
+from cadpanel.terms.limits.chains import chains_of
+from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.lower_bound import LackTerm
+from cadpanel.terms.term import HeldTerm
 
 
-class RadiusLimit(LackLimit):
+class MinRadius(Limit):
+    """The tightest normal radius of a cone or cylinder that the shop can roll, mm."""
+
+    name = "min_radius"
+    what = "least radius"
+    default = 10.0
+    least = 0.1
+    help = "Tightest radius that the shop can roll."
+    at_least = True
+    remedy = "a tighter radius"
+    rows = (Row("least_radius", "Tightest radius, mm", "{:.1f}"),)
+
+    def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
+        """See `Limit.held`; a `LackTerm` has a margin of its own."""
+        del margin
+        least, groups = allowed[self.name] / panels.place.length, panels.layout.groups
+        return [
+            RadiusTerm(group, place, panels.layout.panels, least)
+            for place, group in enumerate(groups)
+            if any(group.feature.curved)
+        ]
+
+    def measure(self, measured: Measured) -> Array:
+        """See `Limit.measure`."""
+        least = np.full(len(measured.shapes), np.inf)
+        for chains in chains_of(measured.shapes):
+            for patch in chains.curved:
+                radius, widening = chains.radius[:, patch, None, None], np.tan(chains.half_angle[:, patch, None, None])
+                radii = np.sign(radius) * (radius + chains.heights[:, :, patch : patch + 2] * widening)
+                least[chains.panels] = np.minimum(least[chains.panels], radii.min(axis=(1, 2)))
+        return least
+
+    def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
+        """See `Limit.missed`."""
+        del length
+        return f"the least radius of {allowed:g} mm is not met: panel '{panel}' gets as tight as {value:.2f} mm"
+
+    def check_feature(self, feature: PanelFeature, allowed: float) -> None:
+        """Refuse a feature whose author asks for a tighter radius than the shop can roll."""
+        for i, patch in enumerate(feature.patches):
+            if patch.kind != "plane" and greatest_radius(patch) < allowed:
+                raise SettingsError(
+                    f"the radius of patch {i} of '{feature.name}' is tighter than the least radius of {allowed:g} mm: "
+                    "ask for a larger one, or allow a tighter one"
+                )
+
+
+class RadiusTerm(LackTerm):
     """Holds the normal radii at the corners of the curved patches of one group of panels above a least one."""
 
     def __init__(self, group: Group, place: int, panels: int, least: float) -> None:
-        """See `LackLimit`; the feature has a curved patch."""
+        """See `LackTerm`; the feature has a curved patch."""
         self._curved = [i for i, curved in enumerate(group.feature.curved) if curved]
         super().__init__(group, place, panels, least, 4 * len(self._curved))
 
@@ -32,10 +87,9 @@ class RadiusLimit(LackLimit):
 
 def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> tuple[Array, Array]:
     edges, rulings = walked.edges, walked.edges.p.shape[1]
-    at = walked.feature.patch_slice(patch).start
     which = np.array([patch, patch + 1, patch, patch + 1])
     places = which + np.array([0, 0, rulings, rulings])
-    radius, angle = walked.values[:, at, None], walked.values[:, at + 1, None]
+    radius, angle = (walked.dimensions[patch].values[:, i, None] for i in (0, 1))
     sign, widening = np.sign(radius), np.tan(angle)
     height = dot(corners.position[:, places] - edges.p[:, which], edges.t[:, which])
     radii = sign * (radius + height * widening)
@@ -46,6 +100,6 @@ def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> t
     # The corner lies on the ruling, so turning the ruling does not change its height to first order.
     moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
     slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
-    slope[..., at] += 1.0
-    slope[..., at + 1] += height * (1.0 + widening**2)
+    inner = np.stack([np.ones_like(height), height * (1.0 + widening**2)], axis=-1)
+    slope += inner @ patch_outer(walked, patch)[:, 6:]
     return radii, sign[..., None] * slope

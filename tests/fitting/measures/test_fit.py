@@ -15,7 +15,8 @@ from cadpanel.delivery.records.report import read_report
 from cadpanel.features.catalogue import CATALOGUE, feature
 from cadpanel.fitting.measures.fit import Measures, largest_deviations, measure
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.geometry.shape import AnyShape, PanelShape, PolygonShape
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.reference.model import Seam
 from cadpanel.reference.strip import strip_of
 from tests.delivered import fitted as strip
@@ -66,7 +67,7 @@ def strip_of_two():
 @cache
 def mixed_features():
     """Chains of several features and polygons, none of which meet."""
-    shapes: list[AnyShape] = [
+    shapes: list[Panel] = [
         *random_shapes(feature("plane-cone-plane"), 1, 2),
         random_polygon(2, 5),
         *random_shapes(feature("cone"), 3, 1),
@@ -103,6 +104,8 @@ every_case = pytest.mark.parametrize("case", CASES)
 def compare(one: Measures, other: Measures, within: float) -> None:
     for field in fields(Measures):
         a, b = getattr(one, field.name), getattr(other, field.name)
+        if field.name == "shapes":
+            continue
         if field.name == "corner_gaps":
             assert [len(gaps) for gaps in a] == [len(gaps) for gaps in b]
             a, b = np.concatenate([*a, np.zeros(0)]), np.concatenate([*b, np.zeros(0)])

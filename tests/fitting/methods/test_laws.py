@@ -13,7 +13,7 @@ from cadpanel.fitting.methods.two_stage import TwoStage
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.geometry.shape import ConePatch
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.solver.stop import Stop
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip

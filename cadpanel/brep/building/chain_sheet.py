@@ -1,0 +1,77 @@
+"""The sheet of a chain: two parallel skins, planar end walls in the cut planes, planar side walls."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
+
+from cadpanel.arrays import Array
+from cadpanel.brep.building import edges, surfaces
+from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
+from cadpanel.geometry.shape import PanelShape
+
+
+def chain_sheet(near: PanelShape, far: PanelShape) -> tuple[Sequence[TopoDS_Face], Sequence[TopoDS_Face]]:
+    """The faces of the skin `near`, and all faces of the sheet between it and the parallel skin `far`."""
+    skin, other = skin_topology(near), skin_topology(far)
+    skin_is_top = float((near.points[0] - far.points[0]) @ near.normals[0]) > 0.0
+    top, bottom = (skin, other) if skin_is_top else (other, skin)
+    sheet = [*top.faces, *(TopoDS.Face_s(face.Reversed()) for face in bottom.faces), *_walls(near, top, bottom)]
+    return skin.faces, sheet
+
+
+def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:
+    """Two side walls and two end walls, all with outward normals."""
+    last = len(shape.points) - 1
+    posts = {
+        (end, ruling): edges.line_edge(
+            bottom.vertices[end][ruling],
+            top.vertices[end][ruling],
+            bottom.corners[end, ruling],
+            top.corners[end, ruling],
+        )
+        for end in range(2)
+        for ruling in (0, last)
+    }
+    sides = [
+        _side_wall(shape, ruling, outward, top, bottom, (posts[0, ruling], posts[1, ruling]))
+        for ruling, outward in ((0, -1), (last, 1))
+    ]
+    ends = [
+        _end_wall(top, bottom, end, outward * shape.cut_normals[end], (posts[end, 0], posts[end, last]))
+        for end, outward in ((0, -1), (1, 1))
+    ]
+    return sides + ends
+
+
+def _side_wall(
+    shape: PanelShape,
+    ruling: int,
+    outward: int,
+    top: SkinTopology,
+    bottom: SkinTopology,
+    posts: tuple[TopoDS_Edge, TopoDS_Edge],
+) -> TopoDS_Face:
+    """The wall through a free ruling and its normal; `outward` is +1 where it faces along b."""
+    loop = [bottom.rulings[ruling].Reversed(), posts[0], top.rulings[ruling], posts[1].Reversed()]
+    # t then n turns about t x n = b, so up the far post and back along the top is the loop about b, and this is -b's.
+    if outward > 0:
+        loop = [edge.Reversed() for edge in reversed(loop)]
+    normal = outward * shape.binormals()[ruling]
+    wall = surfaces.plane_surface(bottom.corners[0, ruling], normal, shape.directions[ruling])
+    return edges.face_on(wall.surface, wall.agrees, loop)
+
+
+def _end_wall(
+    top: SkinTopology, bottom: SkinTopology, end: int, normal: Array, posts: tuple[TopoDS_Edge, TopoDS_Edge]
+) -> TopoDS_Face:
+    """The wall in a cut plane. At end 0, seen against its outward normal, the walk along b goes to the right."""
+    loop: list[TopoDS_Shape] = [posts[0], *top.ends[end], posts[1].Reversed()]
+    loop += [edge.Reversed() for edge in reversed(bottom.ends[end])]
+    # b then n turns about b x n = -t: the loop bottom, last post, top, first post is that of end 0.
+    if end == 0:
+        loop = [edge.Reversed() for edge in reversed(loop)]
+    corners = bottom.corners[end]
+    wall = surfaces.plane_surface(corners[0], normal, corners[-1] - corners[0])
+    return edges.face_on(wall.surface, wall.agrees, loop)

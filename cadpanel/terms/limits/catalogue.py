@@ -1,0 +1,18 @@
+"""The limits that panels keep to, in the order of the report's rows. A new one is a file of its own and a line here.
+
+One that the user sets has a field in `FitSettings` besides, `name: float = limit_setting(LIMIT)`.
+"""
+
+from __future__ import annotations
+
+from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
+from cadpanel.terms.limits.flange_width import FlangeWidth
+from cadpanel.terms.limits.limit import Limit
+from cadpanel.terms.limits.min_radius import MinRadius
+
+LIMITS: tuple[Limit, ...] = (
+    DriftAlong(),
+    DriftAcross(),
+    MinRadius(),
+    FlangeWidth(),
+)

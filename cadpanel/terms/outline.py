@@ -1,0 +1,61 @@
+"""Where the reference has a panel's corners, and which part of their drift from there counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.terms.state import State
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limited:
+    """Which corners are limited in one direction, and what of their drift counts.
+
+    Attributes:
+        corners: (panels, L) their places among the panels' corners.
+        part: (panels, L, d, 3) rows that take from a drift what is limited; zero where a panel has fewer corners.
+    """
+
+    corners: IntArray
+    part: Array
+
+    def take(self, panels: IntArray) -> Limited:
+        """Those of some panels, as many to a panel as they need."""
+        part = self.part[panels]
+        held = part.any(axis=(0, 2, 3))
+        return Limited(corners=self.corners[panels][:, held], part=part[:, held])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outline:
+    """The reference's corners as the drift limits see them.
+
+    Inside the fold a panel has corners too, where its flanges begin. Where across the fold they lie is a matter of the
+    fit, but along the strip they belong on the reference's end like the outer ones: otherwise a cut plane could tilt
+    far out of the end while its outer corners stay. How far they are from the end is told in the direction of the
+    strip, so that a corner may slide along an end that runs askew.
+
+    Attributes:
+        corners: (panels, corners, 3) points on the reference's outline in the panels' own frames and the solver's
+            length: its corners, and between them points on its ends.
+        along: all corners, one number each: the drift along the strip.
+        across: outer corners, three numbers each: the drift across the free edge. A panel whose ends cannot be told
+            from its sides has only these, and they are its whole drift.
+        sided: (panels,) whether ends can be told from sides.
+    """
+
+    corners: Array
+    along: Limited
+    across: Limited
+    sided: BoolArray
+
+    def take(self, panels: IntArray) -> Outline:
+        """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""
+        along, across = self.along.take(panels), self.across.take(panels)
+        count = 1 + max(int(limited.corners.max(initial=0)) for limited in (along, across))
+        return Outline(corners=self.corners[panels, :count], along=along, across=across, sided=self.sided[panels])
+
+    def drift(self, state: State) -> Array:
+        """(panels, corners, 3) from the reference's corners to the panels'."""
+        return state.corners.position - self.corners

@@ -1,0 +1,162 @@
+"""Damaged files: whatever is done to one, reading it ends in panels or in one sentence, and leaves nothing behind.
+
+The files are read by the guarded interpreter, which the kernel may crash; this process must not notice.
+"""
+
+import random
+import re
+
+import numpy as np
+import pytest
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+
+from cadpanel.brep.cutting.by_mesh import load_mesh
+from cadpanel.brep.files.catalogue import FORMATS
+from cadpanel.brep.files.loading import load_model
+from cadpanel.brep.files.model import Label
+from cadpanel.brep.isolation import client
+from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.read import read_raw_panels
+from cadpanel.errors import CadpanelError
+from cadpanel.reference.settings import ReferenceSettings
+from tests.brep.cutting.test_by_network import curve
+from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
+from tests.reference_shapes import Lip, kernel_lip, write_products
+
+VARIANTS = 110  # of each of six files, so 660 in all
+SECONDS = 3.0  # after which a reader counts as hanging
+LONGEST_SENTENCE = 1000
+NUMBERS = re.compile(rb"(?<=[\s(,])-?\d+\.?\d*(?=[\s,)])")
+REFERENCES = re.compile(rb"#\d+")
+CUT, FLIP, TYPE, DROP, NUMBER, SWAP = range(6)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("fuzz")
+
+
+@pytest.fixture(scope="module")
+def originals(folder):
+    faces = strip_faces(Lip(), poles=6)
+    labelled: list[Labelled] = [(Label(name=f"face {k}", color="#102030"), face, []) for k, face in enumerate(faces)]
+    written = {
+        "products.step": write_products(folder / "products.step", [("lip", kernel_lip(Lip()))]),
+        "labelled.step": write_labelled(folder / "labelled.step", labelled),
+        "faces.iges": write_labelled(folder / "faces.iges", labelled),
+        "text.brep": write_shape(folder / "text.brep", compound_of(faces)),
+        "binary.bin.brep": write_shape(folder / "binary.bin.brep", BRepPrimAPI_MakeBox(100.0, 200.0, 300.0).Shape()),
+    }
+    rhino = pytest.importorskip("rhino3dm")
+    file = rhino.File3dm()
+    file.Settings.ModelUnitSystem = rhino.UnitSystem.Millimeters
+    file.Objects.AddBrep(rhino.Brep.CreateFromSphere(rhino.Sphere(rhino.Point3d(0.0, 0.0, 0.0), 100.0)))
+    written["sphere.3dm"] = folder / "sphere.3dm"
+    assert file.Write(str(written["sphere.3dm"]), 8)
+    return {name: path.read_bytes() for name, path in written.items()}
+
+
+def damaged(data, seed):
+    """One of six kinds of damage, always the same for the same seed."""
+    chance, text = random.Random(seed), bytearray(data)
+    kind, times = seed % 6, chance.choice((1, 1, 3, 12))
+    if kind == CUT:
+        return bytes(text[: chance.randrange(1, len(text))])
+    for _ in range(times):
+        if not text:
+            break
+        if kind == FLIP:
+            text[chance.randrange(len(text))] ^= 1 << chance.randrange(8)
+        elif kind == TYPE:
+            text[chance.randrange(len(text))] = chance.choice(b"0123456789.-E#,()$*'\n ")
+        elif kind == DROP:
+            start = chance.randrange(len(text))
+            del text[start : start + chance.randrange(1, 200)]
+        else:
+            found = list((NUMBERS if kind == NUMBER else REFERENCES).finditer(bytes(text)))
+            if not found:
+                text[chance.randrange(len(text))] = 0
+                continue
+            place = chance.choice(found)
+            other = chance.choice((b"0", b"-1", b"1e99", b"300", b"99999999", b"-0.", chance.choice(found).group()))
+            text[place.start() : place.end()] = chance.choice(found).group() if kind == SWAP else other
+    return bytes(text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", ["products.step", "labelled.step", "faces.iges", "text.brep", "binary.bin.brep", "sphere.3dm"]
+)
+def test_damaged_file_gives_panels_or_one_sentence(originals, tmp_path, monkeypatch, name, capfd):
+    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
+    path = tmp_path / name
+    read, sentences = 0, []
+    for seed in range(VARIANTS):
+        path.write_bytes(damaged(originals[name], seed))
+        try:
+            if name == "products.step":
+                read_raw_panels(path)
+            else:
+                load_model(path)
+            read += 1
+        except CadpanelError as error:
+            sentences.append(str(error))
+    assert read + len(sentences) == VARIANTS
+    assert sentences
+    assert [said for said in sentences if not said.endswith(".") or len(said) > LONGEST_SENTENCE] == []
+    assert [left.name for left in tmp_path.iterdir()] == [name]
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("ending", sorted(ending for form in FORMATS for ending in form.suffixes))
+def test_file_of_another_kind_under_the_ending_is_refused(tmp_path, ending):
+    path = tmp_path / f"model{ending}"
+    path.write_bytes(random.Random(ending).randbytes(5000))
+    with pytest.raises(CadpanelError, match=r"of no format that it knows"):
+        load_model(path)
+
+
+@pytest.fixture(scope="module")
+def lines(folder):
+    """Two curves across the strip."""
+    u = np.linspace(0.0, 3.0, 60)
+    return write_shape(folder / "lines.brep", compound_of(curve(Lip()(u, np.full(60, v))) for v in (0.3, 0.6)))
+
+
+# Over what seeds 7 and 22 leave, the kernel crashes when a curve is laid over a face.
+@pytest.mark.parametrize(
+    ("seeds", "ways"),
+    [(range(NUMBER, NUMBER + 6 * 30, 6), ("divide", "grid")), ((7, 10, 16, 22, 28), ("network",))],
+    ids=["alone", "curves"],
+)
+def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatch, seeds, ways):
+    """What was read may still be nothing that can be cut: bent, empty or far away."""
+    monkeypatch.setattr(client, "SECONDS_TO_READ", SECONDS)
+    monkeypatch.setattr(client, "SECONDS_TO_WORK", SECONDS)
+    path = tmp_path / "text.brep"
+    settings = {"divide": 3, "grid": (2, 2), "network": lines}
+    sentences = []
+    for seed in seeds:
+        path.write_bytes(damaged(originals["text.brep"], seed))
+        for how in ({way: settings[way]} for way in ways):
+            try:
+                panels = read_raw_panels(path, ReferenceSettings(unit="mm", **how)).panels
+                assert panels
+            except CadpanelError as error:
+                sentences.append(str(error))
+    assert sentences
+    assert [said for said in sentences if "text.brep" not in said and "lines.brep" not in said] == []
+
+
+def test_damaged_mesh_is_read_or_refused(tmp_path):
+    path = tmp_path / "mesh.obj"
+    text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n"
+    sentences = []
+    for seed in range(200):
+        path.write_bytes(damaged(text, seed))
+        try:
+            load_mesh(path, np.zeros(3), 1.0, 0.01)
+        except CadpanelError as error:
+            sentences.append(str(error))
+    assert sentences
+    assert [said for said in sentences if "mesh.obj" not in said] == []

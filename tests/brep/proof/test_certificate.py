@@ -1,0 +1,245 @@
+"""The certificate holds for what was delivered and fails for anything that was changed afterwards."""
+
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+from OCP.gp import gp_Trsf, gp_Vec
+from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+from cadpanel.brep.building.sheet import build_skin, build_solid
+from cadpanel.brep.proof import parallel
+from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.step.file import write_step
+from cadpanel.errors import DeliveryError
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.volume import sheet_volume
+from tests.shapes import folded_panel, moved, random_panel
+
+THICKNESS = 3.0
+GAP = 0.25
+
+
+def expected(shape: PanelShape) -> ExpectedPanel:
+    built = shape.straightened().shape
+    kinds: list[PatchKind] = [
+        "plane" if not isinstance(patch, ConePatch) else "cone" if patch.half_angle else "cylinder"
+        for patch in built.patches
+    ]
+    volume = sheet_volume(built, THICKNESS)
+    return ExpectedPanel(name=shape.name, volume=volume, kinds=tuple(kinds), corners=built.corners())
+
+
+def strip() -> list[PanelShape]:
+    """Three cylindrical panels in a row, a quarter of a millimetre apart."""
+    return [replace(moved(folded_panel(), (i * (1000.0 + GAP), 0.0, 0.0)), name=f"P{i}") for i in range(3)]
+
+
+SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), edges=("end 1", "end 0"), gap=GAP) for i in range(2)]
+
+
+class Delivery:
+    def __init__(self, folder, shapes):
+        self.panels_step, self.skins_step = folder / "panels.step", folder / "skins.step"
+        self.expected = [expected(shape) for shape in shapes]
+        self.solids = {shape.name: build_solid(shape, THICKNESS) for shape in shapes}
+        self.skins = {shape.name: build_skin(shape) for shape in shapes}
+        self.write()
+
+    def write(self):
+        for path, shapes in ((self.panels_step, self.solids), (self.skins_step, self.skins)):
+            write_step(path, [(name, shape, None) for name, shape in shapes.items()], title=path.stem)
+
+    def certify(self, seams=SEAMS, helper=None):
+        return certify(self.panels_step, self.skins_step, self.expected, seams, helper)
+
+
+@pytest.fixture
+def delivery(tmp_path):
+    return Delivery(tmp_path, strip())
+
+
+def shifted(shape, distance):
+    motion = gp_Trsf()
+    motion.SetTranslation(gp_Vec(0.0, 0.0, distance))
+    return shape.Moved(TopLoc_Location(motion))
+
+
+def test_an_untouched_delivery_holds(delivery):
+    found = delivery.certify()
+    assert found.failures == ()
+    assert found.holds
+    assert (found.solids, found.skins) == (3, 3)
+    assert found.valid
+    assert found.names_kept
+    assert found.face_kinds == {"plane": 24, "cone": 0, "cylinder": 6, "other": 0}
+    assert found.max_tangency_error < 1e-11
+    assert found.volume_error < 1e-12
+    assert found.max_corner_error < 1e-9
+    assert found.seam_gaps == pytest.approx([GAP, GAP], abs=1e-9)
+    assert found.max_seam_gap == pytest.approx(GAP, abs=1e-9)
+
+
+def test_cones_concave_panels_and_other_chains_hold(tmp_path):
+    shapes = [
+        random_panel(1, name="A"),
+        random_panel(2, name="B", concave=True),
+        random_panel(3, name="C", chain="plane-cone-cone-plane"),
+        random_panel(4, name="D", chain="plane"),
+        random_panel(5, name="E", half_angle=1e-7),
+    ]
+    found = Delivery(tmp_path, shapes).certify(seams=())
+    assert found.failures == ()
+    assert found.max_tangency_error < 1e-11
+    assert found.volume_error < 2e-12
+    assert found.max_seam_gap == 0.0
+
+
+@pytest.mark.parametrize("files", [("solids",), ("skins",), ("solids", "skins")])
+def test_a_panel_moved_by_a_hundredth_of_a_millimetre_fails(delivery, files):
+    for file in files:
+        shapes = getattr(delivery, file)
+        shapes["P1"] = shifted(shapes["P1"], 0.01)
+    delivery.write()
+    found = delivery.certify()
+    assert not found.holds
+    assert any("P1" in failure and "0.01 mm" in failure for failure in found.failures)
+
+
+@pytest.mark.parametrize("file", ["solids", "skins"])
+def test_a_renamed_panel_fails(delivery, file):
+    shapes = getattr(delivery, file)
+    shapes["Q1"] = shapes.pop("P1")
+    delivery.write()
+    found = delivery.certify()
+    assert not found.names_kept
+    assert f"Panel 'P1' is missing among the {file}." in found.failures
+    assert f"Panel 'Q1' is among the {file} but is not expected there." in found.failures
+
+
+@pytest.mark.parametrize("file", ["solids", "skins"])
+def test_a_missing_panel_fails(delivery, file):
+    del getattr(delivery, file)["P2"]
+    delivery.write()
+    found = delivery.certify()
+    assert not found.names_kept
+    assert any("'P2' is missing" in failure for failure in found.failures)
+
+
+def test_a_panel_delivered_twice_fails(delivery):
+    solids = [(name, shape, None) for name, shape in delivery.solids.items()]
+    write_step(delivery.panels_step, [*solids, solids[0]], title="panels")
+    assert not delivery.certify().names_kept
+
+
+def test_a_face_that_became_a_spline_fails(delivery):
+    spline = BRepBuilderAPI_NurbsConvert(delivery.solids["P1"]).Shape()
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    root = tool.NewShape()
+    for name, shape in {**delivery.solids, "P1": spline}.items():
+        label = tool.AddShape(shape, False)
+        TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+        tool.AddComponent(root, label, TopLoc_Location())
+    tool.UpdateAssemblies()
+    writer = STEPCAFControl_Writer()
+    assert writer.Transfer(document, STEPControl_AsIs)
+    writer.Write(str(delivery.panels_step))
+    found = delivery.certify()
+    assert found.face_kinds["other"] > 0
+    assert any("P1" in failure and "other" in failure for failure in found.failures)
+
+
+def test_a_kink_between_two_patches_fails(tmp_path):
+    # The smallest kink that counts, set into the file itself: a plane's normal turned by 1e-7 rad.
+    delivery = Delivery(tmp_path, [folded_panel(name="P0", chain="pp", widths=(200.0, 200.0), turns=(0.0, 0.0))])
+    assert delivery.certify(seams=()).holds
+    text = delivery.skins_step.read_text()
+    assert text.count("DIRECTION('',(0.0,0.0,1.0))") == 1
+    position = text.rindex("=PLANE(")
+    placement = text[text.index("#", position + 1) + 1 :].split(")")[0]
+    line = next(row for row in text.splitlines() if row.startswith(f"#{placement}="))
+    number = len(text.splitlines()) + 1000
+    origin, normal, along = line.split("(''")[1].strip(",);").split(",")
+    turned = line.replace(f"{normal},{along}", f"#{number},{along}")
+    extra = f"{turned}\n#{number}=DIRECTION('',(0.0,1.0E-07,1.0));"
+    delivery.skins_step.write_text(text.replace(line, extra))
+    found = delivery.certify(seams=())
+    assert origin
+    assert found.max_tangency_error == pytest.approx(1e-7, rel=1e-3)
+    assert any("kink of 1e-07 rad" in failure for failure in found.failures)
+
+
+def test_a_wrong_volume_fails(delivery):
+    delivery.expected[1] = replace(delivery.expected[1], volume=delivery.expected[1].volume * (1.0 + 2e-9))
+    assert any("'P1'" in failure and "volume" in failure for failure in delivery.certify().failures)
+
+
+def test_a_seam_wider_than_stated_fails(delivery):
+    tighter = [replace(SEAMS[0], gap=GAP - 2e-4), SEAMS[1]]
+    assert delivery.certify([replace(SEAMS[0], gap=GAP - 5e-5)]).holds
+    [failure] = delivery.certify(tighter).failures
+    assert failure == "Seam 'P0' to 'P1': the gap is 0.25 mm, 0.2498 mm are stated."
+
+
+def test_a_seam_of_an_unknown_panel_fails(delivery):
+    found = delivery.certify([ExpectedSeam(panels=("P0", "P9"), edges=("end 1", "end 0"))])
+    assert not found.holds
+    assert found.seam_gaps == (np.inf,)
+
+
+def test_a_solid_where_a_skin_should_be_fails(delivery):
+    delivery.skins["P1"] = delivery.solids["P1"]
+    delivery.write()
+    assert any("'P1': its skin holds 1 shells and 1 solids" in failure for failure in delivery.certify().failures)
+
+
+def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
+    alone = delivery.certify()
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    assert delivery.certify() == alone
+
+
+def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch):
+    alone = delivery.certify()
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
+        assert helper is not None
+        helper.begin(delivery.skins_step)
+        assert delivery.certify(helper=helper) == alone
+
+
+@pytest.mark.parametrize("dies", ["at once", "over the skins", "over the panels"])
+def test_a_second_interpreter_that_dies_costs_nothing_but_time(delivery, monkeypatch, dies):
+    alone = delivery.certify()
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    script = {
+        "at once": "",
+        "over the skins": "import sys; sys.stdout.buffer.write(bytes(3))",
+        "over the panels": "import pickle, sys; pickle.dump([], sys.stdout.buffer); sys.stdin.buffer.read(1)",
+    }[dies]
+    start = subprocess.Popen
+    monkeypatch.setattr("subprocess.Popen", lambda command, **how: start([command[0], "-c", script], **how))
+    found = delivery.certify()
+    assert (found.solids, found.valid, found.volume_error) == (alone.solids, alone.valid, alone.volume_error)
+    assert found == alone or dies == "over the panels"
+
+
+@pytest.mark.parametrize("file", ["panels_step", "skins_step"])
+def test_a_file_cut_short_cannot_be_certified(delivery, file, monkeypatch):
+    monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
+    path = getattr(delivery, file)
+    path.write_text(path.read_text()[:5000])
+    with pytest.raises(DeliveryError, match="cannot be read"):
+        delivery.certify()

@@ -1,0 +1,170 @@
+"""STEP files keep every name, colour and digit, repeat byte for byte, and are written whole or not at all."""
+
+import os
+
+import numpy as np
+import pytest
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDF import TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from cadpanel.brep.building.sheet import build_skin, build_solid, volume_of
+from cadpanel.brep.proof.shape_facts import inspect
+from cadpanel.brep.step.file import read_step_shapes, write_step
+from cadpanel.brep.step.text import real, string
+from cadpanel.errors import DeliveryError
+from tests.shapes import CHAINS, random_panel
+
+NAMES = ["A-01", "panel with spaces", "Süd, Ost", 'it\'s \\ "quoted"', "面板 7", "🏗 crane", "A/B;C*", "#12=X()"]
+BLUE = (0.25, 0.5, 0.75)
+
+
+@pytest.fixture
+def panels():
+    return [random_panel(seed, name=name) for seed, name in enumerate(NAMES)]
+
+
+def test_names_survive_in_their_order(tmp_path, panels):
+    write_step(tmp_path / "a.step", [(p.name, build_solid(p, 3.0), None) for p in panels], title="Lip 'ä'")
+    assert [name for name, _ in read_step_shapes(tmp_path / "a.step")] == NAMES
+
+
+def test_one_panel_alone_keeps_its_name(tmp_path):
+    write_step(tmp_path / "a.step", [("only", build_solid(random_panel(1), 3.0), None)], title="t")
+    [(name, shape)] = read_step_shapes(tmp_path / "a.step")
+    assert name == "only"
+    assert shape.ShapeType() == TopAbs_SOLID
+
+
+@pytest.mark.parametrize("half_angle", [0.0, 6e-6, 1e-4, 0.02, -0.02, 0.1])
+@pytest.mark.parametrize("concave", [False, True])
+@pytest.mark.parametrize("heal", [False, True])
+def test_solids_and_skins_read_back_are_exactly_valid_and_lose_no_digit(tmp_path, half_angle, concave, heal):
+    for chain in sorted(CHAINS):
+        panel = random_panel(11, chain=chain, half_angle=half_angle, concave=concave, mitre=0.5)
+        for kind, built in ((TopAbs_SOLID, build_solid(panel, 3.0)), (TopAbs_SHELL, build_skin(panel))):
+            write_step(tmp_path / "a.step", [("p", built, None)], title="t")
+            [(_, again)] = read_step_shapes(tmp_path / "a.step", heal=heal)
+            assert again.ShapeType() == kind
+            assert BRepCheck_Analyzer(again, True, False, True).IsValid()
+            before, after = inspect("p", built), inspect("p", again)
+            assert after.face_kinds == before.face_kinds
+            apart = np.linalg.norm(after.vertices[:, None] - before.vertices[None], axis=-1)
+            assert apart.min(axis=0).max() < 1e-11
+            if kind == TopAbs_SOLID:
+                assert volume_of(again) == pytest.approx(volume_of(built), rel=1e-12)
+
+
+@pytest.mark.parametrize("schema", ["AP242", "AP214"])
+def test_the_header_says_who_wrote_it_in_which_schema(tmp_path, schema):
+    write_step(tmp_path / "a.step", [("p", build_solid(random_panel(1), 3.0), BLUE)], title="Lip", schema=schema)
+    head = (tmp_path / "a.step").read_text()[:600]
+    assert "'cadpanel'" in head
+    assert {"AP242": "AP242_MANAGED", "AP214": "AUTOMOTIVE_DESIGN"}[schema] in head
+    assert len(read_step_shapes(tmp_path / "a.step")) == 1
+
+
+def test_the_same_panels_give_the_same_bytes(tmp_path, panels):
+    for file in ("a.step", "b.step"):
+        write_step(tmp_path / file, [(p.name, build_solid(p, 3.0), BLUE) for p in panels], title="t")
+    assert (tmp_path / "a.step").read_bytes() == (tmp_path / "b.step").read_bytes()
+
+
+def test_colours_survive(tmp_path):
+    write_step(tmp_path / "a.step", [("p", build_solid(random_panel(1), 3.0), BLUE)], title="t")
+    reader = STEPCAFControl_Reader()
+    reader.SetColorMode(True)
+    assert reader.ReadFile(str(tmp_path / "a.step")) == IFSelect_RetDone
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    assert reader.Transfer(document)
+    tool, labels = XCAFDoc_DocumentTool.ShapeTool_s(document.Main()), TDF_LabelSequence()
+    tool.GetShapes(labels)
+    colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    found = []
+    for index in range(1, labels.Length() + 1):
+        color = Quantity_Color()
+        shape = XCAFDoc_ShapeTool.GetShape_s(labels.Value(index))
+        if colors.GetColor(shape, XCAFDoc_ColorSurf, color):
+            found.append(color.Values(Quantity_TOC_sRGB))
+    assert found
+    assert found[0] == pytest.approx(BLUE, abs=1e-6)
+
+
+def test_the_kernel_keeps_quiet(tmp_path, capfd):
+    write_step(tmp_path / "a.step", [("p", build_solid(random_panel(1), 3.0), None)], title="t")
+    read_step_shapes(tmp_path / "a.step")
+    output = capfd.readouterr()
+    assert output.out == ""
+    assert output.err == ""
+
+
+def test_an_existing_file_is_replaced_and_nothing_else_is_left(tmp_path):
+    (tmp_path / "a.step").write_text("old")
+    write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    assert [file.name for file in tmp_path.iterdir()] == ["a.step"]
+    assert (tmp_path / "a.step").read_text().startswith("ISO-10303-21;")
+
+
+def test_a_folder_that_is_not_there_is_one_clear_sentence(tmp_path):
+    with pytest.raises(DeliveryError, match=r"a\.step cannot be written: No such file or directory\."):
+        write_step(tmp_path / "none" / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path, monkeypatch):
+    def full(_descriptor):
+        raise OSError(28, os.strerror(28))
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(DeliveryError, match="No space left on device"):
+        write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_shape_with_other_faces_is_refused(tmp_path):
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+
+    spline = BRepBuilderAPI_NurbsConvert(build_solid(random_panel(1), 3.0)).Shape()
+    with pytest.raises(DeliveryError, match="BSplineSurface, not an exact panel"):
+        write_step(tmp_path / "a.step", [("p", spline, None)], title="t")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("text", ["", "not STEP at all", "ISO-10303-21;\nHEADER;\n"])
+def test_a_file_that_is_not_step_is_one_clear_sentence(tmp_path, text):
+    (tmp_path / "a.step").write_text(text)
+    with pytest.raises(DeliveryError, match="cannot be read"):
+        read_step_shapes(tmp_path / "a.step")
+
+
+def test_a_missing_file_is_one_clear_sentence(tmp_path):
+    with pytest.raises(DeliveryError, match="no such file"):
+        read_step_shapes(tmp_path / "a.step")
+
+
+def test_a_file_cut_short_is_not_taken_for_a_whole_one(tmp_path, panels):
+    write_step(tmp_path / "a.step", [(p.name, build_solid(p, 3.0), None) for p in panels], title="t")
+    text = (tmp_path / "a.step").read_text()
+    (tmp_path / "a.step").write_text(text[: len(text) // 2])
+    with pytest.raises(DeliveryError, match="cannot be read"):
+        read_step_shapes(tmp_path / "a.step")
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [(0.0, "0.0"), (-1.5, "-1.5"), (1e-7, "1.E-07"), (1.25e-30, "1.25E-30"), (1e22, "1.E+22"), (0.1, "0.1")],
+)
+def test_reals_have_a_point_and_all_digits(number, text):
+    assert real(number) == text
+    assert float(real(number)) == number
+
+
+def test_strings_are_encoded_as_the_standard_says():
+    assert string("it's") == "'it''s'"
+    assert string("a\\b") == "'a\\\\b'"
+    assert string("ä面🏗") == "'\\X2\\00E4\\X0\\\\X2\\9762\\X0\\\\X4\\0001F3D7\\X0\\'"

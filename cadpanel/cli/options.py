@@ -65,8 +65,12 @@ class _Asked:
     option: Option
     parameter: Parameter
 
-    def value(self, given: object) -> object:
-        return given if self.option.read is None else self.option.read(flag(self.name), given)
+    def of(self, given: Mapping[str, Any]) -> dict[str, object]:
+        """The setting by its name; nothing where what is shown as the default stands, which says it for people."""
+        value = given[self.name]
+        if value is None or value == self.parameter.default:
+            return {}
+        return {self.name: value if self.option.read is None else self.option.read(flag(self.name), value)}
 
 
 def flag(name: str) -> str:
@@ -97,8 +101,8 @@ def made_of_settings(command: Callable[..., None]) -> Callable[..., None]:
     def asking(**given: Any) -> None:
         _refuse_contradictions(given)
         settings = {
-            name: of(**{one.name: one.value(given[one.name]) for one in asked if given[one.name] is not None})
-            for name, (of, asked) in made.items()
+            name: kind(**{key: value for one in asked for key, value in one.of(given).items()})
+            for name, (kind, asked) in made.items()
         }
         options = {one.name for _, asked in made.values() for one in asked}
         command(**settings, **{name: value for name, value in given.items() if name not in options})

@@ -29,7 +29,7 @@ class Oven:
         200.0, within=Range(what="heat", least=50.0, most=300.0, unit=" C"), option=Option(metavar="C", help="Degrees.")
     )
     half_time: float | None = setting(
-        None, option=Option(takes=str, read=halved, show=lambda half: 2.0 * half, metavar="MIN", help="Of the whole.")
+        0.1, option=Option(takes=str, read=halved, show=lambda _: "0.3", metavar="MIN", help="Of the whole.")
     )
     fan: bool = setting(False, option=Option(help="With the fan?"))
     dishes: tuple[str, ...] = setting((), option=Option(takes=list[str], told=False, help="What goes in."))
@@ -112,6 +112,7 @@ def test_options_stand_where_the_settings_stand_and_show_their_defaults(
     places = [shown.index(word) for word in ("--heat", "--half-time", "--fan", "--dishes", "--quiet")]
     assert places == sorted(places)
     assert "[default: 200.0]" in shown
+    assert "[default: 0.3]" in shown  # whatever an option makes of what it shows, the setting's own default counts
     assert "--no-fan" not in shown
 
 

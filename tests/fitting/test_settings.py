@@ -10,8 +10,10 @@ from cadpanel.features.catalogue import CATALOGUE, feature, polygon
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.fitting.settings import FitSettings, Weights
+from cadpanel.terms.limits.catalogue import LIMITS
 
-NUMBERS = ("gap_tolerance", "drift_along", "drift_across", "restarts", "seed")
+ASKED = [limit for limit in LIMITS if limit.asked]
+NUMBERS = ("gap_tolerance", *(limit.name for limit in ASKED), "restarts", "seed")
 
 
 @pytest.mark.parametrize("name", NUMBERS)
@@ -56,8 +58,7 @@ def test_weights_that_no_double_can_hold_together_are_refused(name, value):
     ("name", "least", "most"),
     [
         ("gap_tolerance", 1e-3, None),
-        ("drift_along", 1e-4, 0.5),
-        ("drift_across", 1e-4, 0.5),
+        *((limit.name, limit.least, None if math.isinf(limit.most) else limit.most) for limit in ASKED),
         ("restarts", 0, 1000),
         ("seed", 0, None),
     ],

@@ -193,7 +193,7 @@ def limit_setting(limit: type[Limit]) -> float:
             metavar="PERCENT",
             help=limit.help,
             read=lambda option, percent: _share(option, percent, limit),
-            show=lambda share: 100.0 * share,
+            show=lambda share: float(f"{100.0 * share:.12g}"),  # 7, not 7.000000000000001
         ),
     )
 

@@ -16,6 +16,4 @@ def test_differences_are_found_wherever_they_are():
     assert max(by for _, by in differences(old, old)) == 0.0
     moved: Tree = {"a": [1.0, {"b": 2.0 + 1e-6}], "c": "x", "d": 1}
     assert dict(differences(old, moved))["/a/1/b"] == pytest.approx(5e-7)
-    assert dict(differences(old, {"a": [1.0], "c": "y", "e": 1})) == dict.fromkeys(
-        ("/a", "/c", "/d"), float("inf")
-    )
+    assert dict(differences(old, {"a": [1.0], "c": "y", "e": 1})) == dict.fromkeys(("/a", "/c", "/d"), float("inf"))

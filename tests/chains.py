@@ -154,6 +154,7 @@ def problem_of(
     coupled, pair = np.unique(met, axis=0, return_inverse=True)
     backwards = np.arange(len(met)) % 3 == 1
     return Problem(
+        names=tuple(f"panel {i}" for i in range(panels)),
         layout=layout,
         place=Placement(
             origins=length * np.arange(panels)[:, None] * np.array([0.0, 1.0, 0.0])

@@ -111,6 +111,12 @@ class RegularShape:
     def corners(self) -> Array:
         return self.outline[None]
 
+    def rulings(self) -> tuple[Array, Array, Array]:
+        return self.as_polygon().rulings()
+
+    def cuts(self) -> tuple[Array, Array]:
+        return self.as_polygon().cuts()
+
     def area(self) -> float:
         reach = np.linalg.norm(self.outline[0] - self.outline.mean(axis=0))
         return float(0.5 * len(self.outline) * reach**2 * np.sin(2.0 * np.pi / len(self.outline)))

@@ -8,36 +8,21 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import (
     INNER,
-    beyond,
     cone_distance,
     cone_distance_inner,
     cone_normal,
     plane_distance,
     plane_inner,
 )
+from cadpanel.geometry.patch_under import patch_under
 
 
 def assign(walked: Walk, x: Array) -> IntArray:
-    """(panels, m) the patch of each point x (3, panels, m).
-
-    A point belongs to the patch between whose bounding rulings its foot point falls. Walks outwards from the anchor
-    ruling: a point that is beyond one ruling may be beyond the next. Asking in this order keeps folds of up to half a
-    turn apart, whose far flange lies behind the near ruling's plane.
-    """
+    """(panels, m) the patch of each point x (3, panels, m); see `patch_under`."""
     anchor, edges, feature = walked.anchor, walked.edges, walked.feature
     if len(feature.patches) == 1:
         return np.zeros(x.shape[1:], dtype=np.intp)
-    right = beyond(x, anchor.p[:, 0], anchor.b[:, 0])
-    patch = np.full(right.shape, feature.anchor, dtype=np.intp)
-    passed = right
-    for i in range(feature.anchor + 1, len(feature.patches)):
-        passed = passed & beyond(x, edges.p[:, i], edges.b[:, i])
-        patch += passed
-    passed = ~right
-    for i in range(feature.anchor, 0, -1):
-        passed = passed & ~beyond(x, edges.p[:, i], edges.b[:, i])
-        patch -= passed
-    return patch
+    return patch_under(x, (anchor.p[:, 0], anchor.b[:, 0]), (edges.p, edges.b), feature.anchor)
 
 
 def patch_distance(walked: Walk, x: Array, patch: int) -> Array:

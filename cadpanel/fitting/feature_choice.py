@@ -11,9 +11,10 @@ from cadpanel.errors import PanelError
 from cadpanel.features.catalogue import POLYGON, for_corners
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.measures.fit import largest_deviations
-from cadpanel.fitting.methods.local import fit_alone
+from cadpanel.fitting.methods.local import Local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.suitability import check_fold
@@ -111,8 +112,8 @@ class Choice:
             # No start was found for one of them, which the next feature may suit better.
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
-        found = fit_alone(problem, starts, self._settings)
-        self.deviations[suited, place] = largest_deviations(problem, part, found.unknowns)
+        found = Local().fit(problem, starts, self._settings)
+        self.deviations[suited, place] = largest_deviations(panel_shapes(problem, found.unknowns), part)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
         if CHEAPEST_FIRST[place] == POLYGON:

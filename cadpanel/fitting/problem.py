@@ -18,7 +18,7 @@ from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start.begin import Start, start
-from cadpanel.reference.model import Reference
+from cadpanel.reference.model import Reference, Seam
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
@@ -38,6 +38,7 @@ class Problem:
     """Everything that stays the same while features are fitted to one reference.
 
     Attributes:
+        names: the panels' names.
         layout: which panels have which feature, in the solver's units.
         place: the panels' own frames.
         deviation: the regression term.
@@ -48,6 +49,7 @@ class Problem:
         bounds: (panels, size) least and greatest unknowns.
     """
 
+    names: tuple[str, ...]
     layout: Layout
     place: Placement
     deviation: Deviation
@@ -63,9 +65,14 @@ class Problem:
         return self.layout.panels
 
     @property
-    def seam_count(self) -> int:
-        """Number of seams."""
-        return sum(len(batch.index) for batch in self.seams)
+    def met(self) -> tuple[Seam, ...]:
+        """The seams one by one, in the reference's order, the lower panel first."""
+        found: dict[int, Seam] = {}
+        for batch in self.seams:
+            rows = (batch.index.tolist(), batch.panels.tolist(), batch.edges.tolist(), batch.reversed.tolist())
+            for index, (a, b), (on_a, on_b), backwards in zip(*rows, strict=True):
+                found[index] = Seam(panels=(a, b), edges=(on_a, on_b), reversed=backwards)
+        return tuple(found[index] for index in range(len(found)))
 
     def state(self, unknowns: Array, *, derivatives: bool = False) -> State:
         """Walk the panels at the unknowns (panels, size)."""
@@ -98,6 +105,7 @@ class Problem:
         # The features that are left may have fewer corners than the longest of all.
         most = max(feature.corner_count for feature in features)
         return Problem(
+            names=tuple(self.names[i] for i in panels),
             layout=layout,
             place=replace(place, origins=place.origins[panels], axes=place.axes[panels]),
             deviation=self.deviation.take(panels),
@@ -186,6 +194,7 @@ def _problem(
     share = samples.weights / (samples.weights.sum() / len(samples.weights))
     seams, pairs = _seams(reference, layout)
     return Problem(
+        names=tuple(panel.name for panel in reference.panels),
         layout=layout,
         place=place,
         deviation=Deviation(np.ascontiguousarray(local), np.sqrt(share), allowed),

@@ -12,6 +12,7 @@ from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
+from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.catalogue import LIMITS
 
 # What the method, the round and the largest excess over a tolerance are told to while a fit runs.
@@ -32,6 +33,7 @@ class FitResult:
             chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
+        stopped: why no better result was looked for.
         seconds: time of the fit, the baselines included.
     """
 
@@ -45,6 +47,7 @@ class FitResult:
     starts: int
     agreed: int
     iterations: int
+    stopped: Stop
     seconds: float
 
     def shape(self, name: str) -> Panel:
@@ -59,7 +62,12 @@ class FitResult:
         raise KeyError(name)
 
     def shortfall(self) -> str | None:
-        """One sentence on the worst seam or panel if the tolerance or a limit does not hold, else None."""
+        """None if the tolerance and all limits hold, else one sentence on the worst seam or panel, and why it ended."""
+        missed = self._missed()
+        return missed and f"{missed}; the search stopped as {self.stopped.value}"
+
+    def _missed(self) -> str | None:
+        """What does not hold, and what would help."""
         if self.tolerance_met:
             return None
         m, tolerance = self.measures, self.settings.gap_tolerance

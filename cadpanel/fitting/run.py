@@ -12,13 +12,12 @@ from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
-from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.catalogue import LOCAL, TWO_STAGE, method_for
 from cadpanel.fitting.methods.local import fit_local
-from cadpanel.fitting.methods.method import Fitted
-from cadpanel.fitting.methods.two_stage import fit_two_stage
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.reference.model import Reference
 
 # How often panels may be given a closer feature because closing the seams took them too far.
@@ -85,26 +84,25 @@ def _fit(
 
     def tell(round_: int, excess: float) -> None:
         if progress is not None:
-            progress("concurrent", round_, excess)
+            progress(how.method, round_, excess)
 
-    staged = fit_two_stage(posed, local.unknowns, how)
-    chosen: Fitted = {
-        "local": lambda: local,
-        "two_stage": lambda: staged,
-        "concurrent": lambda: fit_concurrent(posed, local.unknowns, how, tell),
-    }[how.method]()
-    measures = measure(posed, reference, chosen.unknowns)
+    staged = TWO_STAGE.fit(posed, [local.unknowns], how)
+    made = {LOCAL: local, TWO_STAGE: staged}
+    method = method_for(how)
+    chosen = made[method] if method in made else method.fit(posed, [local.unknowns], how, tell)
+    measures = measure(panel_shapes(posed, chosen.unknowns), reference)
     return FitResult(
         reference=reference,
         settings=how,
         shapes=measures.shapes,
         measures=measures,
-        local=measure(posed, reference, local.unknowns),
-        two_stage=measure(posed, reference, staged.unknowns),
+        local=measure(panel_shapes(posed, local.unknowns), reference),
+        two_stage=measure(panel_shapes(posed, staged.unknowns), reference),
         tolerance_met=keeps_limits(measures, how),
         starts=chosen.starts,
         agreed=chosen.agreed,
         iterations=chosen.iterations,
+        stopped=chosen.stopped,
         seconds=time.perf_counter() - began,
     )
 

@@ -41,6 +41,17 @@ class Panel(Protocol):
         """(2, k + 1, 3) the corners along both ends, or (1, n, 3) all round, mm."""
         ...
 
+    def rulings(self) -> tuple[Array, Array, Array]:
+        """Points in mm, unit directions and unit normals (k + 1, 3) of the rulings that bound its k patches.
+
+        Of a panel with edges all round that of its one plane, (1, 3) each.
+        """
+        ...
+
+    def cuts(self) -> tuple[Array, Array]:
+        """Points in mm and unit normals (2, 3) of the planes that cut its two ends; (0, 3) where it has none."""
+        ...
+
     def area(self) -> float:
         """Area of the trimmed skin, mm2. The panel must be buildable."""
         ...

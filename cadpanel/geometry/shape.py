@@ -16,7 +16,7 @@ from cadpanel.geometry.panel import Straightened
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
-from cadpanel.geometry.vectors import cross
+from cadpanel.geometry.vectors import cross, unit
 from cadpanel.geometry.volume import patch_areas
 
 
@@ -55,6 +55,14 @@ class PanelShape:
         rate = np.einsum("rx,ex->er", self.directions, self.cut_normals)
         corners: Array = self.points + (height / rate)[..., None] * self.directions
         return corners
+
+    def rulings(self) -> tuple[Array, Array, Array]:
+        """Points, directions and normals of its rulings, (k + 1, 3) each."""
+        return self.points, self.directions, self.normals
+
+    def cuts(self) -> tuple[Array, Array]:
+        """Points and normals of its two cut planes, (2, 3) each."""
+        return self.cut_points, self.cut_normals
 
     def binormals(self) -> Array:
         """(k + 1, 3) unit b = t x n, the way the walk goes."""
@@ -121,6 +129,14 @@ class PolygonShape:
     def corners(self) -> Array:
         """(1, n, 3) the outline as one row, mm."""
         return self.outline[None]
+
+    def rulings(self) -> tuple[Array, Array, Array]:
+        """Its first edge on its plane: point, direction and normal, (1, 3) each."""
+        return self.outline[:1], unit(self.outline[1:2] - self.outline[:1]), self.normal[None]
+
+    def cuts(self) -> tuple[Array, Array]:
+        """None: its edges lie square on it."""
+        return np.empty((0, 3)), np.empty((0, 3))
 
     def offset(self, distance: float) -> PolygonShape:
         """The parallel panel at `distance` mm along the normal (negative: inwards)."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.solver.levenberg_marquardt import Model, Stopping, levenberg_marquardt
+from cadpanel.solver.stop import Stop
 from cadpanel.solver.tolerance_weights import Hold
 
 
@@ -25,13 +26,16 @@ class Held(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Schedule:
-    """How long the weights are adapted.
+    """How long the weights are adapted, and by which residuals of the Karush-Kuhn-Tucker conditions they come to rest.
+
+    The conditions are stationarity of the cost and feasibility of what is held (Nocedal and Wright, Numerical
+    Optimization, 2nd ed. 2006, chapters 12 and 17).
 
     Attributes:
         balance: rounds at most in which weights rise and fall.
         close: rounds at most after these in which weights only rise, until everything holds.
-        steady: relative change of the free cost between two rounds below which it is at rest.
-        slack: how far above its distance a vector may be for the balance to end.
+        stationarity: relative change of the free cost between two rounds below which it is at rest.
+        feasibility: how far above its distance a vector may be for the balance to end.
         aim: share of the distances that the weights steer to.
         patience: rounds without a smaller total violation after which it moves on: from balance to close, from close to
             an end.
@@ -40,8 +44,8 @@ class Schedule:
 
     balance: int = 60
     close: int = 40
-    steady: float = 2e-3
-    slack: float = 1e-3
+    stationarity: float = 2e-3
+    feasibility: float = 1e-3
     aim: float = 1.0
     patience: int = 20
     inner: Stopping = field(default_factory=lambda: Stopping(cost=1e-3, iterations=5))
@@ -56,12 +60,14 @@ class HeldSolution:
         iterations: linear systems solved in all rounds.
         rounds: the round it was reached in.
         excess: the largest |v| / tau that is left; up to 1 where everything holds.
+        stopped: why no further round was made.
     """
 
     unknowns: Array
     iterations: int
     rounds: int
     excess: float
+    stopped: Stop
 
 
 def hold_tolerances(
@@ -89,6 +95,7 @@ def hold_tolerances(
     unknowns, iterations, last = start, 0, np.inf
     best: HeldSolution | None = None
     closing_from, improved, least = schedule.balance, 0, np.inf
+    stopped = Stop.STEP_LIMIT
     for round_ in range(1, schedule.balance + schedule.close + 1):
         solution = levenberg_marquardt(model, unknowns, schedule.inner)
         unknowns, iterations = solution.unknowns, iterations + solution.iterations
@@ -97,27 +104,29 @@ def hold_tolerances(
         if progress is not None:
             progress(round_, excess)
         if cost > most_cost:
+            stopped = Stop.TOO_COSTLY
             break
         closing = round_ > closing_from
-        at_rest = abs(cost - last) <= schedule.steady * cost
-        if excess <= 1.0 + (0.0 if closing else schedule.slack) and (closing or at_rest):
-            return HeldSolution(unknowns, iterations, round_, excess)
+        at_rest = abs(cost - last) <= schedule.stationarity * cost
+        if excess <= 1.0 + (0.0 if closing else schedule.feasibility) and (closing or at_rest):
+            return HeldSolution(unknowns, iterations, round_, excess, Stop.HELD)
         # All that holds is equally good; of these the last one is the most settled.
         violation = sum(term.hold.violation(v) for term, v in zip(held, vectors, strict=True))
         if violation < least:
             least, improved = violation, round_
         if best is None or max(excess, 1.0) <= max(best.excess, 1.0):
-            best = HeldSolution(unknowns, iterations, round_, excess)
+            best = HeldSolution(unknowns, iterations, round_, excess, stopped)
         if round_ - max(improved, closing_from if closing else 0) >= schedule.patience:
             if closing:
+                stopped = Stop.STALLED
                 break
             closing_from = round_
         last = cost
         for term, v in zip(held, vectors, strict=True):
             term.hold.adapt(v, only_grow=closing, aim=schedule.aim)
     if best is None:
-        best = HeldSolution(start, 0, 0, _excess(held, [term.vectors_at(start) for term in held]))
-    return replace(best, iterations=iterations)
+        best = HeldSolution(start, 0, 0, _excess(held, [term.vectors_at(start) for term in held]), stopped)
+    return replace(best, iterations=iterations, stopped=stopped)
 
 
 def _excess(held: Sequence[Held], vectors: Sequence[Array]) -> float:

@@ -21,6 +21,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import BlockPattern, Normal
+from cadpanel.solver.stop import Stop
 
 # Marquardt's scale of an unknown that no residual sees is 0; this share of the block's largest keeps the step finite.
 _LEAST_SCALE = 1e-9
@@ -105,6 +106,11 @@ class Solution:
     cost: Array
     converged: BoolArray
     iterations: int
+
+    @property
+    def stopped(self) -> Stop:
+        """Why all of it stopped: one component that ran out of steps is not at rest."""
+        return Stop.AT_REST if self.converged.all() else Stop.STEP_LIMIT
 
 
 def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float = 1e-3) -> Solution:

@@ -14,10 +14,16 @@ import numpy as np
 from cadpanel.arrays import Array
 
 # What cannot be held is given up here, before the weights drown the rest of the objective.
-MOST_WEIGHT = 1e5
-
-# How the paces change, between which bounds, and how far a weight may leap in one round.
-_QUICKEN, _CALM, _PACES, _LEAP = 1.2, 0.5, (0.1, 2.0), 2.0
+PENALTY_MAX = 1e5
+# No weight grows or shrinks by more than this in one round: the factor by which penalty methods raise their parameter
+# (Nocedal and Wright, Numerical Optimization, 2nd ed. 2006, section 17.1).
+PENALTY_FACTOR = 2.0
+# Rprop's eta+ and eta- and the bounds of its steps (Riedmiller and Braun, A direct adaptive method for faster
+# backpropagation learning: the RPROP algorithm, IEEE Int. Conf. on Neural Networks 1993). A step is here the exponent
+# of |v| / tau by which a weight is multiplied.
+ETA_PLUS, ETA_MINUS = 1.2, 0.5
+STEP_MIN, STEP_MAX = 0.1, 2.0
+# A vector of length 0 has a logarithm, too.
 _LEAST_RATIO = 1e-6
 
 
@@ -40,7 +46,7 @@ class Hold:
         self.radius = radius
         self.weight = np.full(radius.shape, weight)
         self._least = least
-        self._pace = np.ones(radius.shape)
+        self._step = np.ones(radius.shape)
         self._side = np.zeros(radius.shape)
 
     def roots(self) -> Array:
@@ -57,10 +63,10 @@ class Hold:
         return float(np.maximum(self._ratio(vectors) - 1.0, 0.0).sum())
 
     def adapt(self, vectors: Array, *, only_grow: bool, aim: float = 1.0) -> None:
-        """Multiply the weights by (|v| / (aim tau))^pace for the next inner solve.
+        """Multiply the weights by (|v| / (aim tau))^step for the next inner solve.
 
-        A vector that stays on one side of its distance quickens its pace, one that jumps from side to side slows down
-        (the rule of Rprop, Riedmiller and Braun 1993, on the logarithms of the weights).
+        The step of a vector that stays on one side of its distance grows, that of one that jumps from side to side
+        shrinks (the rule of Rprop on the logarithms of the weights).
 
         Args:
             vectors: (groups, vectors, d) at the last solution.
@@ -69,10 +75,10 @@ class Hold:
         """
         ratio = np.maximum(self._ratio(vectors) / aim, _LEAST_RATIO)
         side = np.sign(np.log(ratio))
-        self._pace = np.clip(self._pace * np.where(side == self._side, _QUICKEN, _CALM), *_PACES)
+        self._step = np.clip(self._step * np.where(side == self._side, ETA_PLUS, ETA_MINUS), STEP_MIN, STEP_MAX)
         self._side = side
-        factor = np.clip(ratio**self._pace, 1.0 if only_grow else 1.0 / _LEAP, _LEAP)
-        self.weight = np.clip(self.weight * factor, self._least, MOST_WEIGHT)
+        factor = np.clip(ratio**self._step, 1.0 if only_grow else 1.0 / PENALTY_FACTOR, PENALTY_FACTOR)
+        self.weight = np.clip(self.weight * factor, self._least, PENALTY_MAX)
 
     def tighten(self, share: Array) -> None:
         """Shrink the distances of every group to a share (groups,) of themselves; the weights stay as a start."""

@@ -70,7 +70,7 @@ def strip(panels: int) -> Lip:
 def local_shapes(reference: Reference) -> tuple[Panel, ...]:
     """Every panel fitted alone: enough to have something to build."""
     posed, begin = pose(reference, [FitSettings().feature_for(4)] * len(reference.panels))
-    return panel_shapes(posed, reference, fit_local(posed, reference, begin, FitSettings()).unknowns)
+    return panel_shapes(posed, fit_local(posed, reference, begin, FitSettings()).unknowns)
 
 
 def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helper: Helper | None) -> Certificate:

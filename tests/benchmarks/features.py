@@ -50,7 +50,7 @@ def recovery(
         problem, starts = pose(reference, [of] * instances)
         found = fit_local(problem, reference, starts).unknowns
         seconds = time.perf_counter() - began
-        shapes = panel_shapes(problem, reference, found)
+        shapes = panel_shapes(problem, found)
         error = np.array(
             [np.linalg.norm(a.corners() - b.corners(), axis=-1).max() for a, b in zip(shapes, known, strict=True)]
         )

@@ -1,8 +1,5 @@
 """Panels in millimetres, as the solids take them, against the walk that they come from."""
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +8,8 @@ from hypothesis import strategies as st
 from cadpanel.features.catalogue import feature
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature
-from cadpanel.fitting.shapes import edge_curves, panel_shapes
+from cadpanel.fitting.measures.edges import edge_curves
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from tests.chains import CHAINS, FEATURES, POLYGONS, made_problem, mixed_unknowns, problem_of, random_unknowns
@@ -26,12 +24,6 @@ every_feature = pytest.mark.parametrize("name", sorted(FEATURES))
 every_chain = pytest.mark.parametrize("name", sorted(CHAINS))
 
 
-def shapes_of(problem, unknowns) -> tuple[Any, ...]:
-    """The panels' shapes; of a reference only the names are asked for."""
-    names: Any = SimpleNamespace(panels=[SimpleNamespace(name=f"panel {i}") for i in range(problem.panels)])
-    return panel_shapes(problem, names, unknowns)
-
-
 @every_feature
 @few
 @given(seed=seeds)
@@ -41,7 +33,7 @@ def test_panel_shapes_have_the_corners_of_the_walk(name, seed):
     unknowns = random_unknowns(of, seed, problem.panels)
     place, state = problem.place, problem.state(unknowns)
     world = place.to_world(state.corners.position) * place.length + place.centre
-    for i, shape in enumerate(shapes_of(problem, unknowns)):
+    for i, shape in enumerate(panel_shapes(problem, unknowns)):
         assert shape.name == f"panel {i}"
         assert shape.feature == of.name
         assert shape.corners().reshape(-1, 3) == pytest.approx(world[i], abs=SAME_POINT)
@@ -54,10 +46,9 @@ def test_edges_of_shapes_are_those_of_the_measures(name, seed):
     of = FEATURES[name]
     problem = made_problem(of, seed)
     unknowns = random_unknowns(of, seed, problem.panels)
-    state, shapes = problem.state(unknowns), shapes_of(problem, unknowns)
-    panels = np.arange(problem.panels)
+    shapes = panel_shapes(problem, unknowns)
     for index, edge in enumerate(of.edges):
-        curves = edge_curves(problem, state, panels, np.full(len(panels), index), straight=edge.straight)
+        curves = edge_curves(shapes, [index] * len(shapes), problem.place.centre)
         for i, shape in enumerate(shapes):
             corners = edge_corners(shape.corners(), edge.name)
             assert curves.corners[i] + problem.place.centre == pytest.approx(corners, abs=SAME_POINT)
@@ -68,7 +59,7 @@ def test_edges_of_shapes_are_those_of_the_measures(name, seed):
 @given(seed=seeds)
 def test_cut_planes_of_shapes_have_unit_normals_along_the_strip(name, seed):
     problem = made_problem(CHAINS[name], seed)
-    for shape in shapes_of(problem, random_unknowns(CHAINS[name], seed, problem.panels)):
+    for shape in panel_shapes(problem, random_unknowns(CHAINS[name], seed, problem.panels)):
         assert isinstance(shape, PanelShape)
         for end in (0, 1):
             assert shape.cut_normals[end] @ shape.directions[0] > 0.0
@@ -81,7 +72,8 @@ def test_cut_planes_of_shapes_have_unit_normals_along_the_strip(name, seed):
 def test_panel_shapes_carry_each_ruling_to_the_next(name, seed):
     """Turning a ruling about the axis that its patch tells of gives the next ruling, as the solids assume."""
     problem = made_problem(CHAINS[name], seed)
-    for shape in shapes_of(problem, random_unknowns(CHAINS[name], seed, problem.panels)):
+    for shape in panel_shapes(problem, random_unknowns(CHAINS[name], seed, problem.panels)):
+        assert isinstance(shape, PanelShape)
         for i, (patch, spec) in enumerate(zip(shape.patches, CHAINS[name].patches, strict=True)):
             assert patch.kind == spec.kind
             if not isinstance(patch, ConePatch):
@@ -105,7 +97,7 @@ def test_panel_shapes_carry_each_ruling_to_the_next(name, seed):
 @given(seed=seeds)
 def test_polygons_lie_in_one_plane_and_run_counterclockwise_about_its_normal(name, seed):
     problem = made_problem(POLYGONS[name], seed)
-    for shape in shapes_of(problem, random_unknowns(POLYGONS[name], seed, problem.panels)):
+    for shape in panel_shapes(problem, random_unknowns(POLYGONS[name], seed, problem.panels)):
         assert isinstance(shape, PolygonShape)
         around = shape.outline - shape.outline.mean(axis=0)
         assert np.linalg.norm(shape.normal) == pytest.approx(1.0, abs=ROUNDING)
@@ -123,9 +115,9 @@ def test_shapes_of_several_features_come_in_the_order_of_the_panels():
     ]
     problem = problem_of(features, 3, np.empty((0, 2)), np.empty((0, 2)))
     unknowns = mixed_unknowns(problem.layout, 3)
-    shapes = shapes_of(problem, unknowns)
+    shapes = panel_shapes(problem, unknowns)
     assert [shape.name for shape in shapes] == [f"panel {i}" for i in range(5)]
     assert [shape.feature for shape in shapes] == [one.name for one in features]
     for i, shape in enumerate(shapes):
-        (alone,) = shapes_of(problem.take(np.array([i])), unknowns[i : i + 1])
+        (alone,) = panel_shapes(problem.take(np.array([i])), unknowns[i : i + 1])
         assert shape.corners() == pytest.approx(alone.corners(), abs=SAME_POINT)

@@ -30,7 +30,8 @@ def local(known, features):
     reference = alone(*known)
     problem, starts = pose(reference, features)
     found = fit_local(problem, reference, starts)
-    return panel_shapes(problem, reference, found.unknowns), measure(problem, reference, found.unknowns)
+    shapes = panel_shapes(problem, found.unknowns)
+    return shapes, measure(shapes, reference)
 
 
 def corner_error(shapes, known):

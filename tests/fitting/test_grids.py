@@ -13,7 +13,7 @@ from cadpanel.brep.read import read_reference
 from cadpanel.features.catalogue import feature, polygon
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.verdict import keeps_limits
-from cadpanel.fitting.methods.concurrent import fit_concurrent
+from cadpanel.fitting.methods.concurrent import Concurrent
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.run import fit
@@ -156,9 +156,9 @@ def mixed(twist, features):
     by_name = [features[panel.name.partition(" ")[0]] for panel in of.panels]
     problem, starts = pose(of, by_name)
     local = fit_local(problem, of, starts)
-    found = fit_concurrent(problem, local.unknowns, FitSettings())
-    shapes = panel_shapes(problem, of, found.unknowns)
-    return of, shapes, measure(problem, of, local.unknowns), measure(problem, of, found.unknowns)
+    found = Concurrent().fit(problem, [local.unknowns], FitSettings())
+    shapes = panel_shapes(problem, found.unknowns)
+    return of, shapes, measure(panel_shapes(problem, local.unknowns), of), measure(shapes, of)
 
 
 @pytest.mark.parametrize("plate", ["planar-quadrilateral", "planar-polygon"])
@@ -199,8 +199,9 @@ def test_a_polygon_meets_the_flange_of_a_folded_panel(open_by):
     of = gable(open_by)
     problem, starts = pose(of, [feature("plane-cone-plane"), polygon(5)])
     local = fit_local(problem, of, starts)
-    assert measure(problem, of, local.unknowns).max_seam_gap == pytest.approx(open_by, abs=1e-3)
-    after = measure(problem, of, fit_concurrent(problem, local.unknowns, FitSettings()).unknowns)
+    assert measure(panel_shapes(problem, local.unknowns), of).max_seam_gap == pytest.approx(open_by, abs=1e-3)
+    found = Concurrent().fit(problem, [local.unknowns], FitSettings())
+    after = measure(panel_shapes(problem, found.unknowns), of)
     assert keeps_limits(after, FitSettings())
     assert after.max_seam_gap <= min(1.0, open_by + 1e-6)
     assert after.overall_rms <= open_by + 1e-6

@@ -62,9 +62,9 @@ def test_known_panels_are_recovered_from_their_samples(name):
     reference = alone(*known)
     problem, starts = pose(reference, len(known) * [own])
     found = fit_local(problem, reference, starts).unknowns
-    shapes = panel_shapes(problem, reference, found)
+    shapes = panel_shapes(problem, found)
     assert corner_error(shapes, known) <= RECOVERED
-    measures = measure(problem, reference, found)
+    measures = measure(shapes, reference)
     assert measures.max_deviation.max() <= RECOVERED
     for one, other in zip(shapes, known, strict=True):
         for patch, expected in zip(one.patches, other.patches, strict=True):

@@ -32,7 +32,8 @@ def local(reference, **how):
     settings_ = FitSettings(method="local", **how)
     problem, starts = posed(reference, settings_)
     found = fit_local(problem, reference, starts)
-    return panel_shapes(problem, reference, found.unknowns), measure(problem, reference, found.unknowns)
+    shapes = panel_shapes(problem, found.unknowns)
+    return shapes, measure(shapes, reference)
 
 
 def corners(shapes):

@@ -10,12 +10,13 @@ from scipy.optimize import NonlinearConstraint, minimize
 
 from cadpanel.arrays import Array
 from cadpanel.solver.constrained import Schedule, hold_tolerances
+from cadpanel.solver.stop import Stop
 from cadpanel.solver.tolerance_weights import Hold
 from tests.solver.models import HeldChain, HeldPoints
 
 # The balance ends where the free cost is at rest within this share and no vector is further out than this share.
 AT_REST, SLACK = 1e-5, 1e-4
-TIGHT = Schedule(balance=200, steady=AT_REST, slack=SLACK)
+TIGHT = Schedule(balance=200, stationarity=AT_REST, feasibility=SLACK)
 # The weight of a vector that all but touches its distance fades slowly: so far off may its point be in the end.
 NEARLY_BINDING = 0.02
 few = settings(max_examples=10)
@@ -89,8 +90,8 @@ def test_where_the_distances_can_be_held_they_are(seed, weight):
     model = HeldPoints(targets, centres, random.uniform(0.001, 0.5, 6), weight=weight)
     # No slack: the rounds go on until nothing is out at all.
     found = solve(model, targets.copy(), Schedule())
-    assert found.excess <= 1.0 + Schedule().slack
-    strict = solve(model, found.unknowns, Schedule(balance=0, slack=0.0))
+    assert found.excess <= 1.0 + Schedule().feasibility
+    strict = solve(model, found.unknowns, Schedule(balance=0, feasibility=0.0))
     assert strict.excess <= 1.0
 
 
@@ -122,11 +123,26 @@ def test_what_cannot_be_held_is_told_by_an_excess_above_one():
         model, np.zeros((1, 2)), Schedule(balance=20, close=10, patience=30), lambda round_, _: told.append(round_)
     )
     assert told == list(range(1, 31))
+    assert found.stopped is Stop.STEP_LIMIT
     told.clear()
-    solve(model, np.zeros((1, 2)), Schedule(patience=3), lambda round_, _: told.append(round_))
+    sooner = solve(model, np.zeros((1, 2)), Schedule(patience=3), lambda round_, _: told.append(round_))
     assert len(told) < 30
+    assert sooner.stopped is Stop.STALLED
     # In the middle both vectors have the length 1.
     assert found.excess == pytest.approx(1.0 / 0.9, rel=1e-3)
+
+
+def test_each_end_says_why_it_is_the_end():
+    targets = np.array([[3.0, 0.0]])
+    held = solve(HeldPoints(targets, np.zeros((1, 2)), np.array([1.0])), targets)
+    assert held.stopped is Stop.HELD
+    model = HeldPoints(targets, np.zeros((1, 2)), np.array([1.0]))
+    dear = hold_tolerances(model, [model], model.free_cost, targets, TIGHT, most_cost=0.1)
+    assert dear.stopped is Stop.TOO_COSTLY
+    assert dear.excess > 1.0
+    short = solve(HeldPoints(targets, np.zeros((1, 2)), np.array([1.0])), targets, Schedule(balance=1, close=0))
+    assert short.stopped is Stop.STEP_LIMIT
+    assert short.rounds == 1
 
 
 def test_every_round_is_told():
@@ -177,7 +193,7 @@ def test_the_last_round_of_the_balance_is_still_one_of_it(balance):
     """What holds from the start counts as done once the cost is at rest or the balance is over, not before."""
     targets = np.array([[1.0, 0.0], [3.0, 0.0]])
     model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
-    found = solve(model, targets.copy(), Schedule(balance=balance, close=5, steady=0.0))
+    found = solve(model, targets.copy(), Schedule(balance=balance, close=5, stationarity=0.0))
     assert found.rounds == balance + 1
 
 
@@ -193,6 +209,6 @@ def test_of_all_that_holds_the_last_one_below_the_most_cost_is_kept():
     targets = np.array([[1.0, 0.0], [3.0, 0.0]])
     model = HeldPoints(targets, np.zeros((2, 2)), np.array([9.0, 9.0]))
     costs = iter([1.0, 2.0, 3.0, 100.0])
-    how = Schedule(balance=20, close=5, steady=0.0)
+    how = Schedule(balance=20, close=5, stationarity=0.0)
     found = hold_tolerances(model, [model], lambda _: next(costs), targets.copy(), how, most_cost=50.0)
     assert found.rounds == 3

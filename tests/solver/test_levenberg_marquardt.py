@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from cadpanel.solver.levenberg_marquardt import Bounds, Stopping, levenberg_marquardt
+from cadpanel.solver.stop import Stop
 from tests.solver.models import (
     HeldChain,
     LinearChain,
@@ -107,6 +108,18 @@ def test_running_out_of_iterations_is_told():
     solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, Stopping(iterations=3))
     assert not solution.converged.any()
     assert solution.iterations == 3
+    assert solution.stopped is Stop.STEP_LIMIT
+    rested = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
+    assert rested.stopped is Stop.AT_REST
+
+
+def test_one_component_that_runs_out_of_iterations_is_told_of_all():
+    starts = np.array([[1.0, 1.0], [-1.2, 1.0]])
+    solution = levenberg_marquardt(
+        side_by_side(rosenbrock, rosenbrock_jacobian, starts), starts, Stopping(iterations=3)
+    )
+    assert solution.converged.tolist() == [True, False]
+    assert solution.stopped is Stop.STEP_LIMIT
 
 
 def test_a_trial_that_makes_no_sense_is_refused():

@@ -241,6 +241,7 @@ def renumbered(case: Case, order: IntArray) -> Case:
     panels, edges, backwards = seams_of(p)
     problem = replace(
         p,
+        names=tuple(p.names[i] for i in order),
         layout=Layout.of([p.layout.feature_of[i] for i in order]),
         place=replace(p.place, origins=p.place.origins[order], axes=p.place.axes[order]),
         deviation=Deviation(np.ascontiguousarray(p.deviation.samples[:, order]), p.deviation.roots[order]),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
-from types import SimpleNamespace
 from typing import Any, cast
 
 import numpy as np
@@ -19,7 +18,6 @@ from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import _offenders
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
-from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong, DriftTerm
 from cadpanel.terms.limits.flange_width import FlangeWidth, WidthTerm
@@ -57,8 +55,7 @@ def lengths_held(term: LackTerm, problem: Any, unknowns: Array) -> Array:
 def test_radii_and_widths_are_measured_where_they_are_held(name: str) -> None:
     problem = made_problem(FEATURES[name], 5)
     unknowns = mixed_unknowns(problem.layout, 5)
-    named = SimpleNamespace(panels=[SimpleNamespace(name=f"N {i}") for i in range(problem.panels)])
-    shapes = panel_shapes(problem, cast(Reference, named), unknowns)
+    shapes = panel_shapes(problem, unknowns)
     zero = np.zeros(problem.panels)
     measured = Measured(shapes=shapes, lengths=zero, drift_along=zero, drift_across=zero)
     for limit, kind in ((MinRadius(), RadiusTerm), (FlangeWidth(), WidthTerm)):

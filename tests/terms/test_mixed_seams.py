@@ -158,9 +158,8 @@ def mixed_gap(features, edges, seed, backwards=False):
     unknowns = mixed_unknowns(problem.layout, seed)
     (term,) = problem.curve_gaps(1.0)
     assert isinstance(term, MixedGap)
-    names: Any = SimpleNamespace(panels=[SimpleNamespace(name=name) for name in "ab"])
     state = problem.state(unknowns)
-    return problem, state, term.vectors(state)[0] * problem.place.length, panel_shapes(problem, names, unknowns)
+    return problem, state, term.vectors(state)[0] * problem.place.length, panel_shapes(problem, unknowns)
 
 
 def from_plane(points, point, normal):

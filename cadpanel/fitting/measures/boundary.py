@@ -2,45 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.problem import Problem
-from cadpanel.fitting.shapes import edge_curves
+from cadpanel.fitting.measures.deviation import deviations
+from cadpanel.fitting.measures.edges import alike, edge_curves, edges_of
 from cadpanel.geometry.end_curves import closest
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import PanelReference, Reference
-from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.state import State
 
 
-def outline_distances(problem: Problem, reference: Reference, state: State) -> Array:
+def outline_distances(shapes: Sequence[Panel], reference: Reference) -> Array:
     """(panels, q) distance of the reference's outline to the skin's patches, mm."""
-    world = _outlines(reference)
-    panels, edges, places, _ = world.shape
-    origins = problem.place.origins + problem.place.centre
-    local = (world.reshape(panels, edges * places, 3) - origins[:, None]) @ problem.place.axes / problem.place.length
-    points = np.ascontiguousarray(np.moveaxis(local, 2, 0))
-    distance, _ = Deviation(points, np.ones(points.shape[1:])).distances(state)
-    return np.abs(distance) * problem.place.length
+    lines = _outlines(reference)
+    return np.abs(deviations(shapes, lines.reshape(len(lines), -1, 3)))
 
 
-def overhang(problem: Problem, reference: Reference, state: State) -> Array:
+def overhang(shapes: Sequence[Panel], reference: Reference) -> Array:
     """(panels,) how far the skin's and the reference's boundaries reach beyond each other, mm.
 
     Inside both outlines the two surfaces are apart by the deviation; what the Hausdorff distance adds happens at the
     boundaries: each point of one to the nearest of the other.
     """
-    lines = _outlines(reference) - problem.place.centre
-    result = np.zeros(problem.panels)
-    for group in problem.layout.groups:
-        for place, edge in enumerate(group.feature.edges):
-            which = np.full(len(group.panels), place)
-            curves = edge_curves(problem, state, group.panels, which, straight=edge.straight)
+    lines = _outlines(reference)
+    centre = lines.mean(axis=(0, 1, 2))
+    result = np.zeros(len(shapes))
+    for members in alike(shapes):
+        group = [shapes[i] for i in members]
+        for place in range(len(edges_of(group[0]))):
+            curves = edge_curves(group, [place] * len(group), centre)
             stations = curves.stations()
-            points, _ = curves.follow(np.broadcast_to(stations, (len(which), len(stations))))
-            line = lines[group.panels, place]
-            there, back = _outline_distance(points, line).max(axis=1), closest(curves, line)[0].max(axis=1)
-            result[group.panels] = np.maximum(result[group.panels], np.maximum(there, back))
+            points, _ = curves.follow(np.broadcast_to(stations, (len(group), len(stations))))
+            line = lines[members, place] - centre
+            there, back = polyline_distance(points, line).max(axis=1), closest(curves, line)[0].max(axis=1)
+            result[members] = np.maximum(result[members], np.maximum(there, back))
     return result
 
 
@@ -61,7 +58,7 @@ def _resample(line: Array, count: int) -> Array:
     return line[np.round(np.linspace(0, len(line) - 1, count)).astype(np.intp)]
 
 
-def _outline_distance(points: Array, line: Array) -> Array:
+def polyline_distance(points: Array, line: Array) -> Array:
     """(panels, q) distance of points (panels, q, 3) to outlines (panels, r, 3): to their chords, or to the curve.
 
     Half-way between two points of an arc its chord is off by the sagitta, which would be told as a distance; where the

@@ -83,4 +83,4 @@ def balanced(
     best_alone = float(problem.deviation.cost(problem.state(local)).sum())
     most = max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)
     solution = hold_tolerances(model, terms, deviation, start, schedule, most_cost=most, progress=progress)
-    return Fitted(solution.unknowns, solution.iterations)
+    return Fitted(solution.unknowns, solution.iterations, solution.stopped)

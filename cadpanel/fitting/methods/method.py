@@ -1,12 +1,17 @@
-"""What every method gives: the unknowns of all panels and how they were reached."""
+"""What every method takes and gives: unknowns of all panels to begin with, and those that were reached."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cadpanel.arrays import Array
+from cadpanel.fitting.problem import Problem
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.solver.stop import Stop
 
+# Told the round and the largest excess over a tolerance while a method runs.
 Progress = Callable[[int, float], None]
 
 
@@ -17,11 +22,38 @@ class Fitted:
     Attributes:
         unknowns: (panels, free).
         iterations: linear systems solved.
+        stopped: why no better ones were looked for.
         agreed: how many of the starts, the first included, ended within 1 % of the best deviation and held.
         starts: how many starts were made.
     """
 
     unknowns: Array
     iterations: int
+    stopped: Stop
     agreed: int = 1
     starts: int = 1
+
+
+class Method(ABC):
+    """A way to fit all panels of a problem.
+
+    A method of one's own is a class with `fit`, in a file of its own, and a line in the catalogue.
+    """
+
+    @abstractmethod
+    def fit(
+        self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
+    ) -> Fitted:
+        """Fit the panels.
+
+        Args:
+            problem: what is to be fitted.
+            starts: arrays (panels, size) of unknowns to begin with, the likeliest first: for the local fits what the
+                reference tells of the panels, for all other methods the local fits alone.
+            settings: what the user asks.
+            progress: told of every round, where a method goes in rounds.
+        """
+
+    def with_weights(self) -> Method:
+        """The method that takes this one's place where the user gives weights instead of a tolerance."""
+        return self

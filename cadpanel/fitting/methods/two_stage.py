@@ -2,24 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 from cadpanel.arrays import Array
 from cadpanel.fitting.methods.balance import MARGIN, balanced
-from cadpanel.fitting.methods.method import Fitted
+from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.objective import Frozen, Objective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings, Weights
+from cadpanel.solver.stop import Stop
 
 
-def fit_two_stage(problem: Problem, local: Array, settings: FitSettings) -> Fitted:
-    """Move the locally fitted panels about and place their corners anew, their shapes frozen, to close the gaps.
+@dataclass(frozen=True, slots=True)
+class TwoStage(Method):
+    """Local fits moved about, and their corners placed anew, to close the gaps while their shapes are frozen.
 
     The industry's way, given its best chance: all panels move at once, cuts may tilt as the feature allows, and a
-    corner gap of 1 mm counts as much as 1 mm of deviation all over a panel. Corners keep within the drift limits.
+    corner gap of 1 mm counts as much as 1 mm of deviation all over a panel, or what the user's weights say. All
+    limits are kept.
     """
-    weights = settings.weights or Weights()
-    gaps = problem.corner_gaps(settings.gap_tolerance)
-    for gap in gaps:
-        gap.hold.weight[:] = weights.gap / weights.deviation
-    limits = problem.limits(settings, MARGIN)
-    everything = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
-    return balanced(problem, Frozen(everything, problem.placement_unknowns()), limits, local, local=local)
+
+    def fit(
+        self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
+    ) -> Fitted:
+        """Fit the panels' places, from local fits."""
+        local = starts[0]
+        weights = settings.weights or Weights()
+        gaps = problem.corner_gaps(settings.gap_tolerance)
+        for gap in gaps:
+            gap.hold.weight[:] = weights.gap / weights.deviation
+        limits = problem.limits(settings, MARGIN)
+        everything = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
+        model = Frozen(everything, problem.placement_unknowns())
+        found = balanced(problem, model, limits, local, local=local, progress=progress)
+        # Gaps are weighed, not held: that the limits hold says nothing of them.
+        return replace(found, stopped=Stop.AT_REST) if found.stopped is Stop.HELD else found

@@ -20,6 +20,7 @@ from cadpanel.fitting.start.frames import Frames, Given, reframe
 from cadpanel.fitting.start.segmentation import ambiguous, cut_profile
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
+from cadpanel.reference.strip import end_plane
 from cadpanel.reference.suitability import check_corners, check_fold
 
 # A curved patch turns by at least this at the start, radians: where it turned by nothing its radius would be unknown.
@@ -32,8 +33,6 @@ _LEAST_FOLD = np.radians(2.0)
 _STEEPEST = 0.3
 # The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
 _ASTRAY = np.cos(np.radians(40.0))
-# An end that is nearly straight does not tell its plane's tilt: singular values below this share are left out.
-_LEAST_SINGULAR = 1e-6
 
 
 def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
@@ -242,17 +241,6 @@ def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames
             values[:, feature.cut_numbers[end, 0]] = (
                 local[:, end, 1] + skew * local[:, end, 0] + tilt_ * local[:, end, 2]
             )
-
-
-def end_plane(line: Array, *, tilt: bool) -> tuple[float, Array]:
-    """The plane m . x = position through an end by least squares, m = (skew, 1, tilt), tilt 0 unless it is wanted.
-
-    `line` (q, 3) runs along the end, in the axes b, t, n of a panel.
-    """
-    columns = [0, 2] if tilt else [0]
-    matrix = np.column_stack([np.ones(len(line)), -line[:, columns]])
-    solution = np.linalg.lstsq(matrix, line[:, 1], rcond=_LEAST_SINGULAR)[0]
-    return float(solution[0]), np.array([solution[1], 1.0, solution[2] if tilt else 0.0])
 
 
 def _refuse_without_fold(panels: Sequence[PanelReference], feature: Feature, sweeps: Array) -> None:

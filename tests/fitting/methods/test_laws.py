@@ -6,13 +6,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cadpanel.fitting.methods.concurrent import fit_concurrent
-from cadpanel.fitting.methods.local import fit_local
-from cadpanel.fitting.methods.two_stage import fit_two_stage
+from cadpanel.fitting.methods import local
+from cadpanel.fitting.methods.concurrent import Concurrent
+from cadpanel.fitting.methods.local import Local, fit_local
+from cadpanel.fitting.methods.two_stage import TwoStage
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.solver.stop import Stop
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.known_panels import alone, flipped, moved, posed, renumbered, ring
@@ -46,10 +48,10 @@ def by_method(method, reference=None):
     problem, starts = posed(reference, settings)
     found = fit_local(problem, reference, starts)
     if method == "two_stage":
-        found = fit_two_stage(problem, found.unknowns, settings)
+        found = TwoStage().fit(problem, [found.unknowns], settings)
     if method == "concurrent":
-        found = fit_concurrent(problem, found.unknowns, settings)
-    return np.array([shape.corners() for shape in panel_shapes(problem, reference, found.unknowns)])
+        found = Concurrent().fit(problem, [found.unknowns], settings)
+    return np.array([shape.corners() for shape in panel_shapes(problem, found.unknowns)])
 
 
 @cache
@@ -150,7 +152,7 @@ def test_a_panel_walked_from_its_other_end_is_the_same_panel(method, panel):
 def test_the_same_seed_gives_the_same_numbers():
     how = FitSettings(restarts=1, seed=5, gap_tolerance=5.0)
     problem, starts = posed(lip(2), how)
-    one, other = (fit_concurrent(problem, starts[0], how) for _ in range(2))
+    one, other = (Concurrent().fit(problem, starts[:1], how) for _ in range(2))
     assert np.array_equal(one.unknowns, other.unknowns)
     assert (one.starts, one.agreed) == (other.starts, other.agreed)
     assert one.starts == 2
@@ -186,7 +188,42 @@ def test_a_tolerance_that_cannot_be_held_is_reported_with_its_seam():
     for panel in seam.panels:
         assert f"'{lip(2).panels[panel].name}'" in sentence
     assert f"{gaps.max():.2f} mm" in sentence
+    assert result.stopped in (Stop.STALLED, Stop.STEP_LIMIT, Stop.TOO_COSTLY)
+    assert sentence.endswith(f"the search stopped as {result.stopped.value}")
     assert fitted().shortfall() is None
+
+
+def test_every_method_tells_why_it_stopped():
+    assert fitted().stopped is Stop.HELD
+    assert fitted(method="local").stopped is Stop.AT_REST
+    # Moved about alone, these panels drift too far before their gaps are as small as the weights ask.
+    assert fitted(method="two_stage").stopped is Stop.TOO_COSTLY
+    assert fitted(weights=Weights()).stopped in (Stop.AT_REST, Stop.STEP_LIMIT)
+
+
+def test_a_gap_that_is_weighed_and_not_held_is_no_tolerance_held():
+    """Two stages keep the drift limits; that says nothing of the gaps, which stay open."""
+    result = fitted(method="two_stage", drift_along=0.5, drift_across=0.5)
+    assert np.all(result.measures.drift_along <= 0.5 * result.measures.lengths)
+    assert not result.tolerance_met
+    assert Stop.AT_REST.value in (result.shortfall() or "")
+
+
+def test_a_local_fit_that_runs_out_of_steps_says_so(monkeypatch):
+    monkeypatch.setattr(local, "_MOST_SETTLE_BY", 2)
+    problem, starts = posed(lip(2), FitSettings())
+    assert Local().fit(problem, starts, FitSettings()).stopped is Stop.AT_REST
+    monkeypatch.setattr(local, "_LOCAL_ITERATIONS", 1)
+    assert Local().fit(problem, starts, FitSettings()).stopped is Stop.STEP_LIMIT
+
+
+def test_curves_that_part_between_the_points_that_are_held_are_no_tolerance_held(monkeypatch):
+    seams = lambda _, met: (np.full(len(met), 50.0), np.zeros(len(met)))  # noqa: E731 - as if arcs parted far
+    monkeypatch.setattr("cadpanel.fitting.methods.concurrent.along_seams", seams)
+    how = FitSettings(gap_tolerance=2.0)
+    problem, starts = posed(lip(2), how)
+    found = Concurrent().fit(problem, [fit_local(problem, lip(2), starts).unknowns], how)
+    assert found.stopped is Stop.OPEN_BETWEEN
 
 
 @every_method

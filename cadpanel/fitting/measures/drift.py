@@ -1,0 +1,58 @@
+"""How far fitted panels' corners drifted from their references', and which way; millimetres."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cadpanel.arrays import Array, IntArray
+from cadpanel.fitting.measures.edges import alike
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.vectors import dot, norm
+from cadpanel.reference.model import Reference
+from cadpanel.reference.strip import strip_of
+
+
+@dataclass(frozen=True, slots=True)
+class Drifts:
+    """Drift of every panel, mm.
+
+    Attributes:
+        whole: (panels,) of the outer corner that drifted most.
+        along: (panels,) of the corner, inner ones included, that drifted most along the strip; of a polygon, whose ends
+            cannot be told from its sides, the whole drift.
+        across: (panels,) of the outer corner that drifted most across its free edge; 0 of a polygon.
+    """
+
+    whole: Array
+    along: Array
+    across: Array
+
+
+def drifts(shapes: Sequence[Panel], reference: Reference) -> Drifts:
+    """The drift of all panels."""
+    found = Drifts(*np.zeros((3, len(shapes))))
+    for members in alike(shapes):
+        corners = np.array([shapes[i].corners() for i in members])
+        measured = _of_chains if shapes[members[0]].four_sided else _of_polygons
+        found.whole[members], found.along[members], found.across[members] = measured(corners, reference, members)
+    return found
+
+
+def _of_chains(corners: Array, reference: Reference, members: IntArray) -> tuple[Array, Array, Array]:
+    """Of n chains with corners (n, 2, k + 1, 3)."""
+    strips = [strip_of(reference.panels[i], corners.shape[2]) for i in members]
+    along = np.array([strip.along(own) for strip, own in zip(strips, corners, strict=True)])
+    outer = np.array([strip.outer_drift(own) for strip, own in zip(strips, corners, strict=True)])
+    way = np.array([strip.direction[:, [0, -1]] for strip in strips])
+    across = outer - dot(outer, way)[..., None] * way
+    return norm(outer).max(axis=(1, 2)), along.max(axis=(1, 2)), norm(across).max(axis=(1, 2))
+
+
+def _of_polygons(corners: Array, reference: Reference, members: IntArray) -> tuple[Array, Array, Array]:
+    """Of n polygons with corners (n, 1, c, 3)."""
+    own = np.array([reference.panels[i].corners.reshape(-1, 3) for i in members])
+    whole = norm(corners[:, 0] - own).max(axis=1)
+    return whole, whole, np.zeros(len(members))

@@ -1,0 +1,21 @@
+"""Why a solver stopped, each reason with what to make of it."""
+
+from __future__ import annotations
+
+from enum import Enum
+
+
+class Stop(Enum):
+    """Why a solver stopped; the value says it in words that follow "it stopped as", with advice."""
+
+    HELD = "everything that it holds keeps to its tolerance"
+    AT_REST = "the cost no longer falls: more steps would change nothing, another start or method might"
+    STEP_LIMIT = "its steps were used up before it came to rest: begin nearer, or ask for less"
+    STALLED = "what it holds comes no nearer to its tolerance, however much that weighs: allow wider tolerances"
+    TOO_COSTLY = (
+        "no approximation would be left if the tolerances were held: allow wider ones, or a model that follows better"
+    )
+    OPEN_BETWEEN = (
+        "curves part far between the points at which they are held together: allow a wider tolerance, or a model that "
+        "follows better"
+    )

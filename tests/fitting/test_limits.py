@@ -134,3 +134,23 @@ def test_a_limit_holds_exactly_from_its_least_length_on(name, least):
         lack = limit.vectors(state)[..., 0]
         np.testing.assert_allclose(lack, np.maximum(1.1 * least - lengths, 0.0), atol=1e-12)
         assert (limit.hold.excess(limit.vectors(state)) <= 1.0) == bool((lengths >= least).all())
+
+
+@pytest.mark.parametrize("name", ["plane-cone-plane", "plane-cone", "planar-quadrilateral", "cone-plane-cone"])
+def test_the_width_of_a_flange_is_how_far_its_rulings_are_apart_at_either_end(name):
+    """Square to the ruling that it begins at, from there to the corner on the next one."""
+    of = FEATURES[name]
+    unknowns = random_unknowns(of, 8)
+    layout = Layout.of([of] * len(unknowns))
+    state = State(layout, layout.walk(unknowns, derivatives=False))
+    (walked,) = state.walks
+    found, _ = WidthLimit(layout.groups[0], 0, len(unknowns), 1.0).lengths(walked, state.corners, derivatives=False)
+    rulings = len(of.patches) + 1
+    corners = state.corners.position.reshape(len(unknowns), 2, rulings, 3)
+    wanted = []
+    for patch in (place for place, curved in enumerate(of.curved) if not curved):
+        p, t = walked.edges.p[:, patch], walked.edges.t[:, patch]
+        for end in (0, 1):
+            off = corners[:, end, patch + 1] - p
+            wanted.append(np.linalg.norm(off - np.sum(off * t, axis=1)[:, None] * t, axis=1))
+    assert found == pytest.approx(np.stack(wanted, axis=1), rel=1e-9)

@@ -217,3 +217,19 @@ def test_stations_follow_every_patch_from_end_to_end(seed):
     assert np.all(np.diff(stations) > 0.0)
     assert set(range(curves.patches + 1)) <= set(stations.tolist())
     assert dot(curves.t, curves.n) == pytest.approx(0.0, abs=1e-12)
+
+
+@few
+@given(seeds, st.integers(0, 1))
+def test_the_closest_point_of_a_straight_end_is_the_foot_or_an_end(seed, end):
+    """On the end of a plane that stands anywhere."""
+    curves = end_curve(random_panel(seed, chain="plane"), end)
+    assert curves.straight
+    random = np.random.default_rng(seed)
+    first, last = curves.corners[0]
+    points = first + random.uniform(-0.5, 1.5, (9, 1)) * (last - first) + 30.0 * random.normal(size=(9, 3))
+    distance, u = closest(curves, points[None])
+    fine = first + np.linspace(0.0, 1.0, 20_001)[:, None] * (last - first)
+    brute = np.linalg.norm(points[:, None] - fine, axis=-1)
+    assert distance[0] == pytest.approx(brute.min(axis=1), abs=1e-3)
+    assert u[0] == pytest.approx(brute.argmin(axis=1) / 20_000, abs=1e-4)

@@ -114,7 +114,8 @@ def test_a_corner_off_the_plane_is_refused(off, fine):
 
 
 @pytest.mark.parametrize(
-    ("length", "fine"), [(1.01 * SMALLEST_LENGTH, True), (0.99 * SMALLEST_LENGTH, False), (0.0, False)]
+    ("length", "fine"),
+    [(1.01 * SMALLEST_LENGTH, True), (0.99 * SMALLEST_LENGTH, False), (0.0, False)],
 )
 def test_an_edge_too_short_is_refused_by_its_number(length, fine):
     shape = flat((0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (1000.0 - length, 1000.0), (0.0, 500.0))
@@ -122,6 +123,10 @@ def test_an_edge_too_short_is_refused_by_its_number(length, fine):
         passes(shape)
     else:
         refused(shape, "edge 2 is only .* merge its two corners")
+
+
+def test_an_edge_of_just_the_smallest_length_passes():
+    passes(flat((0.0, 0.0), (SMALLEST_LENGTH, 0.0), (1000.0, 1000.0), (0.0, 1000.0)))
 
 
 @given(seeds, counts)

@@ -31,7 +31,7 @@ MODULES = "geometry,features,terms,solver,brep.skin.curvature"
 LAWS = {
     "geometry": ("tests/features", "tests/brep/building/test_sheet.py"),
     "features": ("tests/terms",),
-    "terms": ("tests/features/test_panel_shapes.py",),
+    "terms": ("tests/fitting/test_limits.py",),
 }
 # A run of tests may take so many times as long as they took without a change, and this many seconds more.
 PATIENCE, START_UP = 4.0, 60.0

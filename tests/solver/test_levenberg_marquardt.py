@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
+from cadpanel.solver import levenberg_marquardt as method
 from cadpanel.solver.levenberg_marquardt import Bounds, Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
 from tests.solver.models import (
@@ -156,3 +157,19 @@ def test_a_start_beyond_the_bounds_is_brought_within_them():
     model.bounds = Bounds(np.array([[0.0, -np.inf]]), np.array([[0.5, np.inf]]))
     solution = levenberg_marquardt(model, start, TIGHT)
     assert solution.unknowns == pytest.approx(np.array([[0.5, 0.25]]), abs=1e-8)
+
+
+def test_where_a_system_cannot_be_solved_it_is_damped_more_and_more(monkeypatch):
+    """As where rounding leaves a matrix that is not positive definite: by 2, then 4, then 8 times."""
+    dampings = []
+    solve = method._step
+
+    def step(pattern, normal, scale, unknowns, bounds):
+        dampings.append(float(scale.max()))
+        return (None, None, None) if len(dampings) <= 3 else solve(pattern, normal, scale, unknowns, bounds)
+
+    monkeypatch.setattr(method, "_step", step)
+    start = np.array([[-1.2, 1.0]])
+    solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
+    assert np.array(dampings[1:4]) / dampings[:3] == pytest.approx([2.0, 4.0, 8.0])
+    assert solution.unknowns == pytest.approx(np.ones((1, 2)), abs=1e-8)

@@ -11,7 +11,7 @@ from cadpanel.features.distance import assign, skin_normals
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.deviation import Deviation
-from tests.chains import CHAINS, POLYGONS
+from tests.chains import CHAINS, FEATURES, POLYGONS, mixed_unknowns, problem_of
 from tests.terms.models import (
     DIFFERENCES,
     ROUNDING,
@@ -116,6 +116,16 @@ def test_many_panels_are_worked_on_in_parts_that_do_not_show(name):
 def test_panels_of_several_features_count_as_each_of_them_does_alone():
     case = mixed_case(9)
     assert_panels_count_as_alone(case, range(case.problem.panels))
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_so_do_panels_of_any_number_of_features_in_whatever_order(count):
+    features = [FEATURES[name] for name in ("plane-cone-plane", "polygon of 5", "tri-cone")[:count]]
+    order = [*features, features[0], *features[::-1]]
+    pairs = [(k, k + 1) for k in range(len(order) - 1)]
+    problem = problem_of(order, 4, pairs, np.tile([1, 0], (len(pairs), 1)))
+    assert len(problem.layout.groups) == count
+    assert_panels_count_as_alone(Case(problem, mixed_unknowns(problem.layout, 4)), range(len(order)))
 
 
 def held_case(name, seed):

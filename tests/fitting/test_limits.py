@@ -144,7 +144,7 @@ def test_the_width_of_a_flange_is_how_far_its_rulings_are_apart_at_either_end(na
     layout = Layout.of([of] * len(unknowns))
     state = State(layout, layout.walk(unknowns, derivatives=False))
     (walked,) = state.walks
-    found, _ = WidthLimit(layout.groups[0], 0, len(unknowns), 1.0).lengths(walked, state.corners, derivatives=False)
+    found, _ = WidthTerm(layout.groups[0], 0, len(unknowns), 1.0).lengths(walked, state.corners, derivatives=False)
     rulings = len(of.patches) + 1
     corners = state.corners.position.reshape(len(unknowns), 2, rulings, 3)
     wanted = []

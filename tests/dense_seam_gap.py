@@ -6,16 +6,18 @@ Written apart from the package's own measure and as simply as can be; slow. The 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.end_curves import EndCurves
 from cadpanel.geometry.vectors import dot
 
 # Places between two neighbours of a peak, each time.
-_FINE = 13
-# Share of a patch to which a peak is followed, and that of the last three points for a closest point.
-_CLOSE = 1e-3
+_FINE = 17
+# Share of a patch: how far apart the last three points for a closest point are.
 _NEAR = 1e-3
 # Seams together: all against all of their points is much to hold.
 _TOGETHER = 40
@@ -23,41 +25,52 @@ _TOGETHER = 40
 _LAST = 1.0 - 1e-13
 
 
-def dense_seam_gap(
-    first: EndCurves, second: EndCurves, *, points: int = 96, targets: int = 192, peaks: int = 4
-) -> tuple[Array, Array]:
-    """Symmetric Hausdorff distance (s,) in mm and kink (s,) in radians.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Density:
+    """How closely curves are followed.
 
-    Args:
-        first: s curves.
-        second: s curves.
-        points: on every patch of one curve; around so many `peaks` of them more are taken.
-        targets: on every patch of the curve that they are measured to, with parabolas through each three.
-        peaks: see points.
+    Attributes:
+        points: on every patch of one curve.
+        peaks: of them around which more and more are taken.
+        close: the step, as a share of a patch, at which that ends.
+        targets: on every patch of the curve that is measured to; parabolas go through each three of them.
     """
+
+    points: int
+    peaks: int
+    close: float
+    targets: int
+
+
+QUICK = Density(points=18, peaks=2, close=2e-3, targets=48)
+FINE = Density(points=192, peaks=8, close=1e-5, targets=384)
+
+
+def dense_seam_gap(first: EndCurves, second: EndCurves, density: Density) -> tuple[Array, Array]:
+    """Symmetric Hausdorff distance (s,) in mm and kink (s,) in radians of s pairs of curves."""
     found = []
     for start in range(0, len(first.corners), _TOGETHER):
         some = np.arange(start, min(start + _TOGETHER, len(first.corners)))
         pair = first.take(some), second.take(some)
-        ways = [_one_way(one, other, points, targets, peaks) for one, other in (pair, pair[::-1])]
+        ways = [_one_way(one, other, density) for one, other in (pair, pair[::-1])]
         found.append(np.maximum(*ways))
     gap, kink = np.concatenate(found, axis=1)
     return gap, kink
 
 
-def _one_way(one: EndCurves, other: EndCurves, points: int, targets: int, peaks: int) -> Array:
+def _one_way(one: EndCurves, other: EndCurves, density: Density) -> Array:
     """(2, s) the largest distances and angles that the first curves' points have."""
-    to = _Targets(other, targets)
+    to = _Targets(other, density.targets)
     rows = np.arange(len(one.corners))[:, None]
-    stations = np.broadcast_to(np.linspace(0.0, one.patches, one.patches * points + 1), (len(rows), one.patches * points + 1))
+    stations = np.tile(np.linspace(0.0, one.patches, one.patches * density.points + 1), (len(rows), 1))
     values = to.measure(one, stations)
     largest = []
     for which, value in enumerate(values):
         beside = np.pad(value, ((0, 0), (1, 1)), constant_values=-1.0)
         is_peak = (value >= beside[:, :-2]) & (value >= beside[:, 2:])
-        highest = np.argsort(-np.where(is_peak, value, -1.0), axis=1, kind="stable")[:, :peaks]
-        at, step, best = stations[rows, highest], 1.0 / points, value.max(axis=1)
-        while step > _CLOSE:
+        highest = np.argsort(-np.where(is_peak, value, -1.0), axis=1, kind="stable")[:, : density.peaks]
+        at, step, best = stations[rows, highest], 1.0 / density.points, value.max(axis=1)
+        while step > density.close:
             around = np.clip(at[..., None] + step * np.linspace(-1.0, 1.0, _FINE), 0.0, one.patches)
             value = to.measure(one, around.reshape(len(rows), -1))[which].reshape(around.shape)
             at = np.take_along_axis(around, value.argmax(axis=2)[..., None], axis=2)[..., 0]
@@ -87,28 +100,29 @@ class _Targets:
             closer = square < least
             least, v = np.where(closer, square, least), np.where(closer, np.minimum(patch + share, patch + _LAST), v)
         # Once more, through three points close to the one that was found.
-        patch = np.floor(v)
-        middle = np.clip(v, patch + _NEAR, patch + _LAST - _NEAR)
+        start = np.floor(v)
+        middle = np.clip(v, start + _NEAR, start + _LAST - _NEAR)
         three = [self.curves.follow(middle + side * _NEAR)[0] for side in (-1.0, 0.0, 1.0)]
-        _, offset = _on_parabola(x, *three, (v - middle) / _NEAR)
-        v = np.clip(middle + offset * _NEAR, patch, patch + _LAST)
+        _, offset = _on_parabola(x, three, (v - middle) / _NEAR)
+        v = np.clip(middle + offset * _NEAR, start, start + _LAST)
         there, facing = self.curves.follow(v)
         chord = np.linalg.norm(normals - facing, axis=-1)
         return np.linalg.norm(there - x, axis=-1), 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
 
     def _nearest(self, x: Array, points: Array) -> tuple[Array, Array]:
         """Squared distances (s, q) of x (s, q, 3) from a patch's points (s, count + 1, 3), and shares of the patch."""
-        square = sum((x[:, :, None, i] - points[:, None, :, i]) ** 2 for i in range(3))
-        place = square.argmin(axis=2)
+        x_y_z = ((x[:, :, None, i] - points[:, None, :, i]) ** 2 for i in range(3))
+        place: IntArray = sum(x_y_z, np.zeros(1)).argmin(axis=2)
         middle = np.clip(place, 1, self.count - 1)
         rows = np.arange(len(x))[:, None]
         three = [points[rows, middle + side] for side in (-1, 0, 1)]
-        least, offset = _on_parabola(x, *three, (place - middle).astype(float))
+        least, offset = _on_parabola(x, three, (place - middle).astype(float))
         return least, (middle + offset) / self.count
 
 
-def _on_parabola(x: Array, before: Array, here: Array, after: Array, offset: Array) -> tuple[Array, Array]:
+def _on_parabola(x: Array, three: Sequence[Array], offset: Array) -> tuple[Array, Array]:
     """Squared distances (s, q) of x (s, q, 3) from parabolas that pass three points at -1, 0 and 1, and where."""
+    before, here, after = three
     rate, bend = 0.5 * (after - before), after - 2.0 * here + before
     away = here - x
     # The derivative of half the squared distance is a cubic in the offset.

@@ -108,7 +108,7 @@ def _starts(on: Stations, of: IntArray, points: Array) -> tuple[IntArray, IntArr
 
 
 def _descend(curves: Array, station: IntArray, square: Array) -> tuple[Array, Array]:
-    """w (m,) with the least distance from the origin near the stations (m,) of pieces (17, m), and its square (m,).
+    """Where (m,) pieces (17, m) are closest to the origin near the stations (m,), and the squared distance (m,).
 
     `square` (m,) is that of the stations: where a descent ends above it, it went astray and the place is searched.
     """
@@ -146,7 +146,7 @@ def _step(curves: Array, w: Array) -> tuple[Array, Array]:
 
 
 def _golden_section(curves: Array, middle: Array) -> tuple[Array, Array]:
-    """w (m,) with the least distance from the origin within a station to both sides of `middle`, and its square."""
+    """Where (m,) pieces are closest to the origin within a station to both sides of `middle`, and the square."""
     low, high = (np.clip(middle + side / STATIONS, 0.0, 1.0) for side in (-1.0, 1.0))
 
     def square(w: Array) -> Array:

@@ -36,15 +36,13 @@ class ConicChains:
     @property
     def count(self) -> int:
         """How many chains."""
-        return self.curves.shape[1] // self.pieces
+        return int(self.curves.shape[1]) // self.pieces
 
     def part(self, chains: slice) -> ConicChains:
         """Some of the chains."""
         first, last, _ = chains.indices(self.count)
         columns = slice(first * self.pieces, last * self.pieces)
-        return ConicChains(
-            pieces=self.pieces, curves=self.curves[:, columns], normals=self.normals[:, columns]
-        )
+        return ConicChains(pieces=self.pieces, curves=self.curves[:, columns], normals=self.normals[:, columns])
 
     def normals_at(self, columns: IntArray, w: Array) -> tuple[Array, Array]:
         """Unit normals (3, n) at w (n,) of the pieces in the columns (n,), and their derivatives by w."""
@@ -53,7 +51,9 @@ class ConicChains:
         cosine, sine = np.cos(phi), np.sin(phi)
         normals = np.take(self.normals, columns, axis=1)
         across = normals[_COSINE], normals[_SINE]
-        return normals[_CONSTANT] + across[0] * cosine + across[1] * sine, turn * (across[1] * cosine - across[0] * sine)
+        return normals[_CONSTANT] + across[0] * cosine + across[1] * sine, turn * (
+            across[1] * cosine - across[0] * sine
+        )
 
 
 def conic_chains(

@@ -11,6 +11,7 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains
 from cadpanel.geometry.widest_place import widest
 
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurvePieces:
     """n pieces center + cos(w) * cosine_axis + sin(w) * sine_axis for arcs, center + w * cosine_axis for segments.
@@ -56,7 +57,7 @@ def _chains(pieces: CurvePieces, origin: Array) -> ConicChains:
         constant=pieces.centers - origin[:, None] + np.where(arcs, 0.0, pieces.starts[..., None] * along),
         cosine=np.where(arcs, along, 0.0),
         sine=np.where(arcs, pieces.sine_axes, 0.0),
-        weights=nothing + [1.0, 0.0, 0.0],
+        weights=np.broadcast_to([1.0, 0.0, 0.0], along.shape),
         span=np.where(arcs, 0.0, turn[..., None] * along),
         start=np.where(pieces.arcs, pieces.starts, 0.0),
         turn=np.where(pieces.arcs, turn, 0.0),

@@ -20,7 +20,7 @@ from cadpanel.geometry.widest_place import widest
 # Points a curved patch is followed at.
 _ARC_POINTS = 24
 # Seams that are measured together: enough to make the cost of a call small, few enough to stay in the cache.
-_TOGETHER = 256
+_TOGETHER = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +53,6 @@ class EndCurves:
         """Patches along a curve."""
         return int(self.radius.shape[1])
 
-    @property
-    def straight(self) -> bool:
-        """Whether every curve is one segment."""
-        return self.patches == 1 and not self.sweep.any()
-
     def follow(self, u: Array) -> tuple[Array, Array]:
         """Points and the skin's normals (s, q, 3) at the parameters u (s, q) in [0, k]."""
         patch = np.clip(np.floor(u).astype(np.intp), 0, self.patches - 1)
@@ -86,7 +81,7 @@ class EndCurves:
 def closest(curves: EndCurves, points: Array) -> tuple[Array, Array]:
     """Distance (s, q) of each point (s, q, 3) to its curve, and the parameter (s, q) of the closest point."""
     origin = curves.corners[:, 0]
-    chains = _chains(curves, origin)
+    chains = as_chains(curves, origin)
     count, each, _ = points.shape
     flat = np.moveaxis(points - origin[:, None], 2, 0).reshape(3, -1)
     column, share, distance = closest_points(stations(chains), np.repeat(np.arange(count), each), flat)
@@ -101,14 +96,14 @@ def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:
     """
     gaps, kinks = np.zeros(len(first.corners)), np.zeros(len(first.corners))
     origin = 0.5 * (first.corners[:, 0] + second.corners[:, 0])
-    one, other = _chains(first, origin), _chains(second, origin)
+    one, other = as_chains(first, origin), as_chains(second, origin)
     for start in range(0, len(gaps), _TOGETHER):
         some = slice(start, start + _TOGETHER)
         gaps[some], kinks[some] = widest(one.part(some), other.part(some))
     return gaps, kinks
 
 
-def _chains(curves: EndCurves, origin: Array) -> ConicChains:
+def as_chains(curves: EndCurves, origin: Array) -> ConicChains:
     """The curves as chains, seen from the origins (s, 3).
 
     With e(phi) the radial vector of a cone patch and m the cut's normal, a generatrix meets the cut plane where its
@@ -131,7 +126,9 @@ def _chains(curves: EndCurves, origin: Array) -> ConicChains:
         constant=np.where(curved, cosine * (rise * center + offset * axis), corners[:, :-1]),
         cosine=np.where(curved, stretch * radial + toward * (sine * center - cosine * level * axis), 0.0),
         sine=np.where(curved, stretch * tangential + aside * (sine * center - cosine * level * axis), 0.0),
-        weights=np.where(curved, np.concatenate([cosine * rise, sine * toward, sine * aside], axis=-1), [1.0, 0.0, 0.0]),
+        weights=np.where(
+            curved, np.concatenate([cosine * rise, sine * toward, sine * aside], axis=-1), [1.0, 0.0, 0.0]
+        ),
         span=np.where(curved, 0.0, corners[:, 1:] - corners[:, :-1]),
         start=flat[..., 0],
         turn=curves.sweep,

@@ -8,7 +8,7 @@ passes from piece to piece, until none is left.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -16,10 +16,10 @@ from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.geometry.closest_points import Stations, closest_points, stations
 from cadpanel.geometry.conic_chains import ConicChains, followed, followed_twice, inner, joined, seen_from
 
-INTERVALS = 4
+INTERVALS = 6
 """In each piece to begin with; an even number, as pairs of them are held against each other."""
-CLOSE = 2e-4
-"""Share of the squared largest value that may be missed: 1e-4 of the value."""
+CLOSE = 1e-4
+"""Share of the largest values that may be missed."""
 _FLAT = 1e-10
 """Share of a chain's extent, and radians, below which gaps and kinks are not told apart."""
 _FADE = 0.125
@@ -43,7 +43,7 @@ class _Places:
         values: (2, n) squared distance from the other curve, and squared chord between the two unit normals.
         slopes: (2, n) their derivatives by w.
         column: (n,) of the other curve's piece with the closest point.
-        share: (n,) where on that piece.
+        foot: (n,) the closest point, as the number of its piece in the other curve and the share of that piece.
         pace: (n,) its derivative by w; 0 where the closest point stays at the end of the other curve.
     """
 
@@ -51,13 +51,8 @@ class _Places:
     values: Array
     slopes: Array
     column: IntArray
-    share: Array
+    foot: Array
     pace: Array
-
-    @property
-    def foot(self) -> Array:
-        """(n,) the closest points by their pieces and the shares of them."""
-        return self.column + self.share
 
     def at(self, index: IntArray | BoolArray) -> _Places:
         """Some of the places."""
@@ -97,12 +92,11 @@ def widest(first: ConicChains, second: ConicChains) -> tuple[Array, Array]:
     seams, pieces = first.count, on.chains.pieces
     column, places = _first_places(on)
     largest = places.values.reshape(2, 2, seams, -1).max(axis=(1, 3))
-    extent = np.ptp(on.points.reshape(3, 2, seams, -1), axis=(1, 3)).max(axis=0)
-    floor = np.stack([(_FLAT * extent) ** 2, np.full(seams, _FLAT**2)])
+    flat = _FLAT * np.ptp(on.points.reshape(3, 2, seams, -1), axis=(1, 3)).max(axis=0)
     intervals = _first_intervals(on, column, places)
     while len(intervals.column):
         seam = intervals.column // pieces % seams
-        level = (largest * (1.0 + CLOSE) + floor)[:, seam]
+        level = np.stack(_missable(*_told(largest), flat))[:, seam]
         peak, at = _expected(intervals)
         passing = _passing(intervals)
         may_hold = (peak + intervals.doubt > level).any(axis=0) | (passing > 0.0)
@@ -110,8 +104,20 @@ def widest(first: ConicChains, second: ConicChains) -> tuple[Array, Array]:
         share = np.where(peak[0] > level[0], at[0], np.where(peak[1] > level[1], at[1], 0.5))
         share = np.where(passing > 0.0, passing, np.clip(share, _MARGIN, 1.0 - _MARGIN))
         intervals, values = _halves(on, intervals.at(cut), share[cut])
-        np.maximum.at(largest, (slice(None), seam[cut]), values)
-    return np.sqrt(largest[0]), 2.0 * np.arcsin(np.minimum(0.5 * np.sqrt(largest[1]), 1.0))
+        for row, found in zip(largest, values, strict=True):
+            np.maximum.at(row, seam[cut], found)
+    return _told(largest)
+
+
+def _told(values: Array) -> tuple[Array, Array]:
+    """Distances and angles from squared distances and squared chords (2, ...)."""
+    return np.sqrt(values[0]), 2.0 * np.arcsin(np.minimum(0.5 * np.sqrt(values[1]), 1.0))
+
+
+def _missable(gaps: Array, kinks: Array, flat: Array) -> tuple[Array, Array]:
+    """(s,) squared distances and squared chords that are not worth another look, where so much was found."""
+    angles = np.minimum(kinks * (1.0 + CLOSE) + _FLAT, np.pi)
+    return (gaps * (1.0 + CLOSE) + flat) ** 2, 4.0 * np.sin(0.5 * angles) ** 2
 
 
 def _first_places(on: Stations) -> tuple[IntArray, _Places]:
@@ -141,7 +147,7 @@ def _looked_at(on: Stations, column: IntArray, w: Array) -> _Places:
 
 
 def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, share: Array) -> _Places:
-    """Places at w (n,) of the pieces in the columns (n,), whose closest points are at the shares of the pieces there."""
+    """Places at w (n,) of the pieces in the columns (n,), whose closest points are known: there, at the shares."""
     points, along, _ = followed_twice(np.take(chains.curves, column, axis=1), w)
     away, across, bend = followed_twice(seen_from(np.take(chains.curves, there, axis=1), points), share)
     square, slant = inner(across, across), inner(away, across)
@@ -159,14 +165,15 @@ def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, 
         values=np.stack([inner(away, away), inner(apart, apart)]),
         slopes=2.0 * np.stack([-inner(straight, along), inner(apart, turning - turning_there * pace)]),
         column=there,
-        share=share,
+        foot=there % chains.pieces + share,
         pace=pace,
     )
 
 
 def _sided(on: Stations, of: _Intervals) -> _Intervals:
-    """The same, with slopes that hold within each interval: a closest point between two pieces counts as of the one
-    that it comes from, or goes to, inside.
+    """The same intervals, with slopes that hold inside them.
+
+    A closest point between two pieces counts as of the one into which it goes inside the interval.
     """
     travel = of.high.foot - of.low.foot
     return _Intervals(
@@ -177,17 +184,19 @@ def _sided(on: Stations, of: _Intervals) -> _Intervals:
 def _on_side(on: Stations, column: IntArray, places: _Places, travel: Array) -> _Places:
     """Places with their closest points on the pieces into which they travel (n,)."""
     border = np.rint(places.foot)
-    piece = border.astype(np.intp) - (travel < 0.0)
+    first = places.column - places.column % on.chains.pieces
+    piece = first + border.astype(np.intp) - (travel < 0.0)
     wrong = (np.abs(places.foot - border) < _MET) & (np.abs(travel) > _MET) & (piece != places.column)
-    wrong &= on.joins[border.astype(np.intp)]
+    wrong &= on.joins[first + border.astype(np.intp)] & (border > 0.0) & (border < on.chains.pieces)
     if not wrong.any():
         return places
     turned = np.flatnonzero(wrong)
-    share = border[turned] - piece[turned]
-    right = _compared(on.chains, column[turned], places.w[turned], piece[turned], share)
+    right = _compared(
+        on.chains, column[turned], places.w[turned], piece[turned], np.where(travel[turned] < 0.0, 1.0, 0.0)
+    )
     slopes, pace = places.slopes.copy(), places.pace.copy()
     slopes[:, turned], pace[turned] = right.slopes, right.pace
-    return _Places(places.w, places.values, slopes, places.column, places.share, pace)
+    return replace(places, slopes=slopes, pace=pace)
 
 
 def _cubic(of: _Intervals, t: Array | float) -> Array:
@@ -204,13 +213,35 @@ def _powers(of: _Intervals) -> tuple[Array, Array, Array, Array]:
 
 
 def _expected(of: _Intervals) -> tuple[Array, Array]:
-    """(2, n) the largest values of the cubics, and at which shares of the intervals; 1/2 where at an end."""
+    """(2, n) the largest values to expect, and at which shares of the intervals; 1/2 where at an end.
+
+    They are those of the cubics. Where the closest point leaps, the distance rises as from the low end until it falls
+    as towards the high end, and the normals' chord may be what either end leads to.
+    """
     start, b, c, d = _powers(of)
     root = np.sqrt(np.maximum(c**2 - 3.0 * b * d, 0.0))
     inside = (b > 0.0) & (b < root - c)
     t = np.where(inside, b / np.where(inside, root - c, 1.0), 0.5)
-    ends = np.maximum(start, of.high.values)
-    return np.where(inside, np.maximum(ends, start + t * (b + t * (c + t * d))), ends), t
+    peak = np.maximum(start, of.high.values)
+    peak = np.where(inside, np.maximum(peak, start + t * (b + t * (c + t * d))), peak)
+    leaps = np.flatnonzero(_leaps(of))
+    if len(leaps):
+        rise, fall = b[:, leaps], -of.width[leaps] * of.high.slopes[:, leaps]
+        low, high = start[:, leaps], of.high.values[:, leaps]
+        meeting = (high[0] + fall[0] - low[0]) / np.where(rise[0] + fall[0] > 0.0, rise[0] + fall[0], np.inf)
+        ridge = (rise[0] > 0.0) & (fall[0] > 0.0) & (meeting > 0.0) & (meeting < 1.0)
+        t[0, leaps] = np.where(ridge, meeting, t[0, leaps])
+        peak[0, leaps] = np.maximum(peak[0, leaps], np.where(ridge, low[0] + meeting * rise[0], 0.0))
+        t[1, leaps] = 0.5
+        peak[1, leaps] = np.maximum(peak[1, leaps], np.maximum(low[1] + rise[1], high[1] + fall[1]))
+    return peak, t
+
+
+def _leaps(of: _Intervals) -> BoolArray:
+    """(n,) whether the closest point leaps in the intervals, as it is too far gone for its pace."""
+    paces = np.maximum(np.abs(of.low.pace), np.abs(of.high.pace))
+    leaps: BoolArray = np.abs(of.high.foot - of.low.foot) > _LEAP * paces * of.width + _MET
+    return leaps
 
 
 def _passing(of: _Intervals) -> Array:
@@ -222,17 +253,16 @@ def _passing(of: _Intervals) -> Array:
     onward = behind > ahead
     border = np.where(onward, np.floor(ahead + _MET) + 1.0, np.ceil(ahead - _MET) - 1.0)
     travel = np.abs(behind - ahead)
-    reached = np.abs(border - ahead) <= travel
-    reached &= travel > _MET
-    paces = of.width * np.stack([of.low.pace, of.high.pace])
-    leaps = (travel > _LEAP * np.abs(paces).max(axis=0)) & (of.width < 0.4 / INTERVALS)
+    passed = (np.abs(border - ahead) <= travel) & (travel > _MET)
+    # Over wide intervals from long pieces to short ones and back what looks like a leap need not be one.
+    passed &= ~_leaps(of) | (of.width > 0.4 / INTERVALS)
     # From whichever end is nearer, as far as the closest point still has to go.
+    paces = of.width * np.stack([of.low.pace, of.high.pace])
     from_low = (paces[1] == 0.0) | (np.abs(border - ahead) <= np.abs(border - behind))
     pace = np.where(from_low, paces[0], paces[1])
     share = np.where(from_low, 0.0, 1.0) + (border - np.where(from_low, ahead, behind)) / np.where(pace, pace, np.inf)
-    outside = (share < -_MET) | (share > 1.0 + _MET) | (pace == 0.0)
-    share = np.where(outside, 0.5, share)
-    return np.where(reached & ~leaps & (share > _MET) & (share < 1.0 - _MET), share, 0.0)
+    share = np.where((share < -_MET) | (share > 1.0 + _MET) | (pace == 0.0), 0.5, share)
+    return np.where(passed & (share > _MET) & (share < 1.0 - _MET), share, 0.0)
 
 
 def _halves(on: Stations, of: _Intervals, share: Array) -> tuple[_Intervals, Array]:
@@ -240,6 +270,9 @@ def _halves(on: Stations, of: _Intervals, share: Array) -> tuple[_Intervals, Arr
     cut = _looked_at(on, of.column, of.low.w + share * of.width)
     doubt = _FADE * np.maximum(np.abs(_cubic(of, share) - cut.values), _FADE * of.doubt)
     parts = _Intervals(
-        np.concatenate([of.column, of.column]), of.low.beside(cut), cut.beside(of.high), np.concatenate([doubt, doubt], axis=1)
+        np.concatenate([of.column, of.column]),
+        of.low.beside(cut),
+        cut.beside(of.high),
+        np.concatenate([doubt, doubt], axis=1),
     )
     return _sided(on, parts), cut.values

@@ -18,8 +18,10 @@ from cadpanel.geometry.conic_chains import ConicChains, followed, followed_twice
 
 INTERVALS = 6
 """In each piece to begin with; an even number, as pairs of them are held against each other."""
-CLOSE = 1e-4
-"""Share of the largest values that may be missed."""
+CLOSE = 1e-5
+"""Share of the largest values by which intervals may be doubted and not be looked at again."""
+_EXPECTED = 1e-9
+"""Share of the largest values by which the cubics may be above them."""
 _FLAT = 1e-10
 """Share of a chain's extent, and radians, below which gaps and kinks are not told apart."""
 _FADE = 0.125
@@ -96,10 +98,10 @@ def widest(first: ConicChains, second: ConicChains) -> tuple[Array, Array]:
     intervals = _first_intervals(on, column, places)
     while len(intervals.column):
         seam = intervals.column // pieces % seams
-        level = np.stack(_missable(*_told(largest), flat))[:, seam]
+        level, doubtful = (_missable(largest, flat, share)[:, seam] for share in (_EXPECTED, CLOSE))
         peak, at = _expected(intervals)
         passing = _passing(intervals)
-        may_hold = (peak + intervals.doubt > level).any(axis=0) | (passing > 0.0)
+        may_hold = ((peak > level) | (peak + intervals.doubt > doubtful)).any(axis=0) | (passing > 0.0)
         cut = np.flatnonzero(may_hold & (intervals.width > _NARROW))
         share = np.where(peak[0] > level[0], at[0], np.where(peak[1] > level[1], at[1], 0.5))
         share = np.where(passing > 0.0, passing, np.clip(share, _MARGIN, 1.0 - _MARGIN))
@@ -114,10 +116,11 @@ def _told(values: Array) -> tuple[Array, Array]:
     return np.sqrt(values[0]), 2.0 * np.arcsin(np.minimum(0.5 * np.sqrt(values[1]), 1.0))
 
 
-def _missable(gaps: Array, kinks: Array, flat: Array) -> tuple[Array, Array]:
-    """(s,) squared distances and squared chords that are not worth another look, where so much was found."""
-    angles = np.minimum(kinks * (1.0 + CLOSE) + _FLAT, np.pi)
-    return (gaps * (1.0 + CLOSE) + flat) ** 2, 4.0 * np.sin(0.5 * angles) ** 2
+def _missable(values: Array, flat: Array, share: float) -> Array:
+    """(2, s) squared distances and chords that are larger than those found (2, s) by a share that may be missed."""
+    gaps, kinks = _told(values)
+    angles = np.minimum(kinks * (1.0 + share) + _FLAT, np.pi)
+    return np.stack([(gaps * (1.0 + share) + flat) ** 2, 4.0 * np.sin(0.5 * angles) ** 2])
 
 
 def _first_places(on: Stations) -> tuple[IntArray, _Places]:

@@ -1,6 +1,7 @@
 """The Hausdorff distance between chains of segments and arcs."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,14 @@ from scipy.spatial import cKDTree
 
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
 from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
+from cadpanel.geometry.end_curves import EndCurves
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape
+from tests.dense_seam_gap import Density, dense_seam_gap
+from tests.known_panels import end_curve
 from tests.shapes import folded_panel, moved, random_panel
+
+DENSE = Density(points=48, peaks=4, close=1e-4, targets=96)
 
 
 def pieces(rows) -> CurvePieces:
@@ -45,13 +51,8 @@ def end_of(shape: PanelShape, end: int) -> CurvePieces:
     return pieces(rows)
 
 
-def dense(chain: CurvePieces, count: int) -> np.ndarray:
-    points = []
-    for index in range(len(chain)):
-        w = np.linspace(chain.starts[index], chain.stops[index], count)[:, None]
-        cosine, sine = (np.cos(w), np.sin(w)) if chain.arcs[index] else (w, 0.0 * w)
-        points.append(chain.centers[index] + cosine * chain.cosine_axes[index] + sine * chain.sine_axes[index])
-    return np.concatenate(points)
+def joined_curves(curves) -> EndCurves:
+    return EndCurves(*(np.concatenate([getattr(of, name) for of in curves]) for name in EndCurves.__slots__))
 
 
 def test_a_curve_is_at_no_distance_from_itself():
@@ -92,12 +93,26 @@ def test_chains_of_different_lengths_can_be_measured_together():
     assert gaps == pytest.approx([0.5, 0.25], abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(12))
-def test_the_distance_agrees_with_a_dense_sampling(seed):
-    one, two = (end_of(random_panel(seed, mitre=mitre), 1) for mitre in (0.05, 0.06))
-    first, second = dense(one, 1500), dense(two, 1500)
-    expected = max(np.max(cKDTree(first).query(second)[0]), np.max(cKDTree(second).query(first)[0]))
-    assert hausdorff_distances([one], [two])[0] == pytest.approx(expected, abs=2e-2)
+@pytest.mark.parametrize("mitre", [0.3001, 0.31, 0.5])
+@pytest.mark.parametrize("chain", ["plane-cone-plane", "plane-cone-cone-plane", "cone-plane-cone", "cone"])
+def test_the_distance_agrees_with_a_dense_measure_within_a_thousandth(chain, mitre):
+    """Ellipses here, generatrices that are cut there: the same curves told in two ways."""
+    pairs = [[random_panel(seed, chain=chain, mitre=of) for of in (0.3, mitre)] for seed in range(30)]
+    found = hausdorff_distances(*([end_of(pair[side], 1) for pair in pairs] for side in (0, 1)))
+    ends = [joined_curves([end_curve(pair[side], 1) for pair in pairs]) for side in (0, 1)]
+    dense, _ = dense_seam_gap(ends[0], ends[1], DENSE)
+    assert dense.max() > 0.01
+    assert found == pytest.approx(dense, rel=1e-3, abs=1e-7)
+
+
+def test_pieces_may_stand_in_any_order():
+    one, two = (end_of(random_panel(seed, chain="plane-cone-cone-plane"), 1) for seed in (3, 4))
+    shift = two.centers[0] - one.centers[0]
+    two = replace(two, centers=two.centers - shift)
+    mixed = CurvePieces(**{name: getattr(one, name)[[2, 0, 3, 1]] for name in CurvePieces.__slots__})
+    expected, found = hausdorff_distances([one, one], [two, one]), hausdorff_distances([mixed, mixed], [two, one])
+    assert found == pytest.approx(expected, rel=1e-3, abs=1e-9)
+    assert expected[0] > 10.0
 
 
 def test_no_pairs_have_no_distances():

@@ -1,0 +1,46 @@
+"""Laws of chains of conic arcs: they are the curves they are made from, and their derivatives are exact."""
+
+import numpy as np
+import pytest
+
+from cadpanel.geometry.conic_chains import followed, followed_twice
+from cadpanel.geometry.end_curves import as_chains
+from tests.seams import KINDS
+
+SEAMS = 20
+STEP = 1e-4
+
+
+def pieces(kind):
+    """Curves of a kind, their chains, and a place on every piece of each."""
+    curves, _ = KINDS[kind](np.random.default_rng(4), SEAMS)
+    chains = as_chains(curves, curves.corners[:, 0])
+    columns = np.arange(SEAMS * curves.patches)
+    return curves, chains, columns, np.random.default_rng(5).uniform(0.05, 0.95, len(columns))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_chain_runs_where_its_curve_runs(kind):
+    curves, chains, columns, w = pieces(kind)
+    u = (np.arange(curves.patches) + w.reshape(SEAMS, -1)).reshape(SEAMS, -1)
+    points, normals = curves.follow(u)
+    scale = max(1.0, np.abs(curves.radius).max() / 1e3)
+    found = followed(chains.curves, w).T.reshape(points.shape) + curves.corners[:, :1]
+    assert found == pytest.approx(points, abs=1e-9 * scale)
+    assert chains.normals_at(columns, w)[0].T.reshape(points.shape) == pytest.approx(normals, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_derivatives_are_those_of_the_points_and_normals(kind):
+    _, chains, columns, w = pieces(kind)
+    point, along, bend = followed_twice(chains.curves, w)
+    before, after = (followed(chains.curves, w + side) for side in (-STEP, STEP))
+    size = np.abs(along).max()
+    assert np.array_equal(point, followed(chains.curves, w)) or np.allclose(
+        point, followed(chains.curves, w), atol=1e-9
+    )
+    assert (after - before) / (2.0 * STEP) == pytest.approx(along, abs=1e-6 * size)
+    assert (after - 2.0 * point + before) / STEP**2 == pytest.approx(bend, abs=1e-3 * size)
+    turning = chains.normals_at(columns, w)[1]
+    normals = [chains.normals_at(columns, w + side)[0] for side in (-STEP, STEP)]
+    assert (normals[1] - normals[0]) / (2.0 * STEP) == pytest.approx(turning, abs=1e-6)

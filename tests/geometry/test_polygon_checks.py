@@ -147,6 +147,14 @@ def test_edges_that_meet_or_cross_are_refused(x, fine):
         refused(shape, "crosses itself")
 
 
+def test_a_corner_of_four_that_is_pulled_through_the_edge_before_it_is_refused():
+    """Of four edges two that do not share a corner are next but one."""
+    through = flat((0.0, 0.0), (1000.0, 0.0), (700.0, 900.0), (300.0, -50.0))
+    assert polygon_area(through) > 0.0
+    refused(through, "crosses itself")
+    passes(flat((0.0, 0.0), (1000.0, 0.0), (700.0, 900.0), (300.0, 50.0)))
+
+
 def test_a_bow_tie_is_refused_although_its_edges_are_long():
     refused(flat((0.0, 0.0), (1000.0, 0.0), (0.0, 600.0), (1000.0, 1000.0)), "crosses itself or is turned inside out")
     refused(flat((0.0, 0.0), (1000.0, 1000.0), (1000.0, 0.0), (0.0, 600.0)), "crosses itself or is turned inside out")

@@ -1,5 +1,6 @@
 """Held vectors: convex problems whose constrained optimum is known."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -212,3 +213,17 @@ def test_of_all_that_holds_the_last_one_below_the_most_cost_is_kept():
     how = Schedule(balance=20, close=5, stationarity=0.0)
     found = hold_tolerances(model, [model], lambda _: next(costs), targets.copy(), how, most_cost=50.0)
     assert found.rounds == 3
+
+
+def test_what_just_reaches_its_distance_is_held():
+    class Touching:
+        hold = SimpleNamespace(excess=lambda _: 1.0, violation=lambda _: 0.0, adapt=lambda *_, **__: None)
+
+        def vectors_at(self, unknowns: Array) -> Array:
+            return unknowns[:, None]
+
+    targets = np.array([[1.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((1, 2)), np.array([9.0]))
+    touching: Any = Touching()
+    how = Schedule(balance=1, close=5, steady=0.0)
+    assert hold_tolerances(model, [touching], model.free_cost, targets.copy(), how).rounds == 2

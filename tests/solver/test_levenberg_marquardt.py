@@ -173,3 +173,20 @@ def test_where_a_system_cannot_be_solved_it_is_damped_more_and_more(monkeypatch)
     solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
     assert np.array(dampings[1:4]) / dampings[:3] == pytest.approx([2.0, 4.0, 8.0])
     assert solution.unknowns == pytest.approx(np.ones((1, 2)), abs=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-8, 1e-3, 1e5])
+def test_the_unit_of_the_residuals_does_not_matter(unit):
+    """Also for the damping of an unknown that is hardly seen beside the other one."""
+
+    def residual(u):
+        return np.array([u[0] ** 3 - 8.0, 1e-7 * (u[1] - 5.0)])
+
+    def jacobian(u):
+        return np.array([[3.0 * u[0] ** 2, 0.0], [0.0, 1e-7]])
+
+    start = np.array([[1.0, 0.0]])
+    plain = levenberg_marquardt(side_by_side(residual, jacobian, start), start, TIGHT)
+    scaled = levenberg_marquardt(side_by_side(residual, jacobian, start, np.array([unit])), start, TIGHT)
+    assert scaled.iterations == plain.iterations
+    assert scaled.unknowns == pytest.approx(plain.unknowns, rel=1e-9)

@@ -225,5 +225,5 @@ def test_what_just_reaches_its_distance_is_held():
     targets = np.array([[1.0, 0.0]])
     model = HeldPoints(targets, np.zeros((1, 2)), np.array([9.0]))
     touching: Any = Touching()
-    how = Schedule(balance=1, close=5, steady=0.0)
+    how = Schedule(balance=1, close=5, stationarity=0.0)
     assert hold_tolerances(model, [touching], model.free_cost, targets.copy(), how).rounds == 2

@@ -12,6 +12,8 @@ from cadpanel.brep.feet import Search
 
 Array = NDArray[np.float64]
 
+# What lies on a limit lies within it, however that is rounded, mm.
+ON_LIMIT = 1e-6
 # A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
 NEAR_PART = 0.01
 NEAR = 10.0
@@ -22,7 +24,7 @@ SAG_PART = 0.15
 
 def reach_of(surface: Surface) -> float:
     """How far off a surface a curve may lie, mm."""
-    return max(NEAR, NEAR_PART * surface.size)
+    return max(NEAR, NEAR_PART * surface.size) + ON_LIMIT
 
 
 def sags(parts: Array, length: float) -> Array:

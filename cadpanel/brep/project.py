@@ -16,7 +16,7 @@ from cadpanel.brep.curves import Curve
 from cadpanel.brep.feet import Search
 from cadpanel.brep.lay import Stretch, lay
 from cadpanel.brep.loops import uncrossed
-from cadpanel.brep.nearness import reach_of
+from cadpanel.brep.nearness import ON_LIMIT, reach_of
 from cadpanel.brep.runs import kept_on_face, runs_over, stretches_of
 from cadpanel.brep.smooth import CLOSE, Piece, piece_through
 from cadpanel.brep.trimmed import Trim
@@ -116,6 +116,7 @@ def _landings(
     """What is left on each surface by pieces, each with the index of its curve, of curves with names for messages."""
     if not pieces:
         return tuple(Landing(edges=(), offset=0.0) for _ in surfaces)
+    tolerance += ON_LIMIT
     faces = [(place, face) for place, surface in enumerate(surfaces) for face in surface.faces]
     found = _over(faces, reaches, pieces, tolerance)
     # Where no face is the nearest one for most of a curve, all of them count.

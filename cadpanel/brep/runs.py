@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cadpanel.brep.boundary import evaluate
 from cadpanel.brep.feet import Feet, Search
 from cadpanel.brep.lay import Stretch
+from cadpanel.brep.nearness import ON_LIMIT
 from cadpanel.brep.patch import Patch
 from cadpanel.brep.smooth import CLOSE, Piece
 from cadpanel.brep.trimmed import Trim
@@ -194,7 +195,8 @@ def _own_end(search: Search, run: Run, side: int, tolerance: float) -> Array:
     gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
     if run.along:
         gaps[gaps <= CLOSE] = np.inf
-    axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
+    # Of two as near, beside a corner, the first.
+    axis, border = np.unravel_index(int((gaps <= gaps.min() + ON_LIMIT).argmax()), gaps.shape)
     if gaps[axis, border] > tolerance:
         return np.zeros((0, 3))
     reached = here.copy()

@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.curves.pcurve_fit import Stretch
 from cadpanel.brep.curves.pieces import Piece
+from cadpanel.brep.curves.reach import ON_LIMIT
 from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.closest_points import Feet, Search
 from cadpanel.brep.faces.face_patch import Patch
@@ -193,7 +194,8 @@ def _own_end(search: Search, run: Run, side: int, tolerance: float) -> Array:
     gaps = np.abs(here[:, None] - bounds) * speeds[:, None]
     if run.along:
         gaps[gaps <= CLOSE] = np.inf
-    axis, border = np.unravel_index(int(gaps.argmin()), gaps.shape)
+    # Of two as near, beside a corner, the first.
+    axis, border = np.unravel_index(int((gaps <= gaps.min() + ON_LIMIT).argmax()), gaps.shape)
     if gaps[axis, border] > tolerance:
         return np.zeros((0, 3))
     reached = here.copy()

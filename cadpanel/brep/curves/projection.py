@@ -14,7 +14,7 @@ from cadpanel.brep.curves.curve_intervals import kept_on_face, runs_over, stretc
 from cadpanel.brep.curves.drawn_curve import Curve
 from cadpanel.brep.curves.pcurve_fit import Stretch, lay
 from cadpanel.brep.curves.pieces import Piece, piece_through
-from cadpanel.brep.curves.reach import reach_of
+from cadpanel.brep.curves.reach import ON_LIMIT, reach_of
 from cadpanel.brep.curves.self_crossing import uncrossed
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.faces.inside_test import Trim
@@ -115,6 +115,7 @@ def _landings(
     """What is left on each surface by pieces, each with the index of its curve, of curves with names for messages."""
     if not pieces:
         return tuple(Landing(edges=(), offset=0.0) for _ in surfaces)
+    tolerance += ON_LIMIT
     faces = [(place, face) for place, surface in enumerate(surfaces) for face in surface.faces]
     found = _over(faces, reaches, pieces, tolerance)
     # Where no face is the nearest one for most of a curve, all of them count.

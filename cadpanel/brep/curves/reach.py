@@ -10,6 +10,8 @@ from cadpanel.arrays import Array
 from cadpanel.brep.faces.closest_points import Search
 from cadpanel.brep.skin.adjacency import Surface
 
+# What lies on a limit lies within it, however that is rounded, mm.
+ON_LIMIT = 1e-6
 # A curve may lie this far off a surface, as a part of the surface's size, and at least this many mm.
 NEAR_PART = 0.01
 NEAR = 10.0
@@ -20,7 +22,7 @@ SAG_PART = 0.15
 
 def reach_of(surface: Surface) -> float:
     """How far off a surface a curve may lie, mm."""
-    return max(NEAR, NEAR_PART * surface.size)
+    return max(NEAR, NEAR_PART * surface.size) + ON_LIMIT
 
 
 def sags(parts: Array, length: float) -> Array:

@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from cadpanel.arrays import Array
 from cadpanel.brep.curves.drawn_curve import Curve
 from cadpanel.brep.curves.projection import Landing
+from cadpanel.brep.curves.reach import ON_LIMIT
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels, middle_of
 from cadpanel.brep.cutting.edges_across_gaps import bridges, points_along
 from cadpanel.brep.cutting.panel_names import Link, place_names
@@ -25,10 +26,13 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.splitter import Pieces, area_of, length_of
 from cadpanel.errors import ReferenceFileError
+from cadpanel.geometry.order import EQUAL, levels
 from cadpanel.geometry.vectors import cross, norm
 
 # An offset of more than this is worth a note, mm.
 WORTH_A_NOTE = 0.01
+# Lengths of edges are told apart from this on, mm.
+LEVEL = 1e-3
 # Tolerances of the splitter that are tried in turn, as parts of the seam tolerance, until every curve cuts.
 FUZZY_PARTS = (0.01, 0.1, 0.5)
 
@@ -111,7 +115,7 @@ def _split(surface: Surface, tools: Sequence[Sequence[TopoDS_Edge]], what: str, 
     for part in FUZZY_PARTS:
         pieces = split_along(faces, [edge for _, edge in owners], what, part * tolerance)
         cut = _looked_at(pieces, owners, tolerance)
-        if cut.loose and all(length_of(edge) <= tolerance for _, edge in cut.loose):
+        if cut.loose and all(length_of(edge) <= tolerance + ON_LIMIT for _, edge in cut.loose):
             kept = _without(pieces, owners, ShapeSet(edge for _, edge in cut.loose))
             pieces = split_along(faces, [edge for _, edge in kept], what, part * tolerance)
             cut = _looked_at(pieces, kept, tolerance)
@@ -166,9 +170,15 @@ def _looked_at(pieces: Pieces, owners: Sequence[tuple[int, TopoDS_Edge]], tolera
     return _Cut(
         faces=faces,
         links=tuple(links),
-        loose=tuple(sorted(loose, key=lambda part: -length_of(part[1]))),
+        loose=_longest_first(loose),
         slivers=tuple(_slivers(faces, curve_edges, tolerance)),
     )
+
+
+def _longest_first(loose: Sequence[tuple[int, TopoDS_Edge]]) -> tuple[tuple[int, TopoDS_Edge], ...]:
+    """Those alike as they were drawn."""
+    lengths = np.array([length_of(edge) for _, edge in loose])
+    return tuple(loose[place] for place in np.argsort(-levels(lengths, LEVEL), kind="stable").tolist())
 
 
 def _slivers(
@@ -190,7 +200,11 @@ def _slivers(
         # Of a strip that is the width; what closes to a tube, or nearly so, encloses little of any plane.
         width = 2.0 * float(norm(area)) / around
         if width < tolerance and area_of(face) < 0.5 * tolerance * around:
-            longest = max(drawn, key=length_of)
+            lengths = [length_of(edge) for edge in drawn]
+            alike = [
+                edge for edge, length in zip(drawn, lengths, strict=True) if length >= (1.0 - EQUAL) * max(lengths)
+            ]
+            longest = min(alike, key=lambda edge: curve_edges[edge])
             yield curve_edges[longest], longest, width
 
 

@@ -17,6 +17,7 @@ from cadpanel.brep.cutting.cut_panel import middle_of
 from cadpanel.brep.cutting.panel_names import Link, place_names
 from cadpanel.brep.faces.face_patch import patch_of
 from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.errors import ReferenceFileError
 from tests.cuts import model_of, panels_of
 from tests.drawn import LENGTH, WIDTH, curve, cut, plate, polyline
 from tests.known_faces import hem, spiral
@@ -44,6 +45,15 @@ def polyline_of(points):
 
 def on_plate(*lines):
     return [plate()], polyline_of, [np.array([(*place, 0.0) for place in line], dtype=float) for line in lines]
+
+
+def plates(first, second, height):
+    """Two plates at heights, and a line at another one."""
+    return (
+        [plate(first), plate(second)],
+        polyline_of,
+        [np.array([(3000, 0, height), (3000, WIDTH, height)], dtype=float)],
+    )
 
 
 def on_strip(us, vs, whole=True):
@@ -113,6 +123,13 @@ CASES = {
         lambda: on_plate([(2000, 0), (2000, WIDTH)], [(4000, 0), (4000, WIDTH)], [(0, 1000), (LENGTH, 1000)]),
         6,
     ),
+    "short by the tolerance": (lambda: on_plate([(3000, 1), (3000, WIDTH - 1)]), 2),
+    "too long by the tolerance": (
+        lambda: on_plate([(3000, 0), (3000, WIDTH)], [(2999, 700), (LENGTH, 700)]),
+        3,
+    ),
+    "beside a corner": (lambda: on_plate([(0.5, 0.5), (LENGTH, WIDTH)]), 2),
+    "farther from one layer by the tolerance": (lambda: plates(0.0, 2.0, 0.5), 4),
     "around a tube": (lambda: tube(500.0, 1000.0), 3),
 }
 
@@ -134,6 +151,23 @@ def test_cut_is_the_same_however_the_numbers_are_rounded(name):
         found = called(faces, draw, rounded)
         assert found.keys() == whole.keys()
         assert all(found[panel] == pytest.approx(whole[panel], abs=SAME_PLACE) for panel in whole)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ([(1000, 700), (2000, 700)], [(3000, 700), (4000, 700)]),
+        ([(3000, 0), (3000, WIDTH)], [(3001, 0), (3001, WIDTH)]),
+    ],
+    ids=["ends", "sliver"],
+)
+def test_refusal_names_the_same_curve_however_its_numbers_are_rounded(lines):
+    faces, draw, drawn = on_plate(*lines)
+    random = np.random.default_rng(12)
+    for noise in (0.0, *2 * NOISES):
+        rounded = [draw(line * (1.0 + noise * random.standard_normal(line.shape))) for line in drawn]
+        with pytest.raises(ReferenceFileError, match="Curve 1 of 'lines'"):
+            cut(faces, rounded)
 
 
 @pytest.mark.parametrize("gap", [0.0, 0.4e-7, 0.6e-7, 1e-6, 1e-4, 0.05, 0.4])

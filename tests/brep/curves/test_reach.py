@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.brep.curves.reach import NEAR, NEAR_PART, SAG_PART, far_off, reach_of, sags
+from cadpanel.brep.curves.reach import NEAR, NEAR_PART, ON_LIMIT, SAG_PART, far_off, reach_of, sags
 from tests.cuts import surface_of
 from tests.known_faces import arc_face, flat
 
@@ -34,7 +34,7 @@ def test_the_chord_of_an_arc_of_65_degrees_sags_as_much_as_is_allowed():
 
 
 def test_reach_grows_with_the_surface_from_a_least_one_on():
-    assert reach_of(plate(100.0)) == NEAR
+    assert reach_of(plate(100.0)) == NEAR + ON_LIMIT
     large = plate(4000.0)
     assert reach_of(large) == pytest.approx(NEAR_PART * large.size)
     assert reach_of(large) > NEAR

@@ -1,15 +1,10 @@
 """Panels that meet all round: grids of flat and of rolled panels, honeycombs, and plates beside folded panels."""
 
-from dataclasses import replace
-from functools import cache
 from itertools import product
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 
-from cadpanel.brep.read import read_reference
 from cadpanel.features.catalogue import feature, polygon
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.verdict import keeps_limits
@@ -21,38 +16,14 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from cadpanel.geometry.sheet_checks import check_buildable
-from cadpanel.reference.model import Seam
-from tests.grids import dome, write_grid, write_honeycomb, write_mixed_row
-from tests.known_panels import alone, moved, renumbered
-from tests.shapes import folded_panel
+from tests.fitted_grids import CASES, fitted, gable, read, reference
+from tests.grids import dome, write_grid, write_mixed_row
+from tests.known_panels import moved, renumbered
 
 # Millimetres, on panels of 1.5 m.
 SAME = 1e-3
 FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
-# The feature of every panel, and the surface: its normals turn sideways, so that no panel fits its neighbour by itself.
-CASES = {
-    "planar-quadrilateral": (write_grid, dome(20_000.0, 30_000.0, 0.008)),
-    "cylinder": (write_grid, dome(60_000.0, 6000.0, 0.003)),
-    "cone": (write_grid, dome(60_000.0, 6000.0, 0.003)),
-    "planar-polygon": (write_honeycomb, dome(20_000.0, 30_000.0, 0.01)),
-}
 every_case = pytest.mark.parametrize("name", CASES)
-
-
-def read(write, *how):
-    with TemporaryDirectory() as folder:
-        return read_reference(write(Path(folder) / "reference.step", *how))
-
-
-@cache
-def reference(name):
-    write, surface = CASES[name]
-    return read(write, surface)
-
-
-@cache
-def fitted(name):
-    return fit(reference(name), FitSettings(feature=name))
 
 
 def edge_name(shape, edge):
@@ -179,19 +150,6 @@ def test_a_plate_meets_the_flange_of_a_folded_panel(twist, plate):
     kinds = {shape.name: [patch.kind for patch in shape.patches] for shape in shapes if isinstance(shape, PanelShape)}
     assert kinds["lip 0"] == ["plane", "cone", "plane"]
     assert kinds["plate 0"] == ["plane"]
-
-
-def gable(open_by):
-    """A folded panel, and a pentagon beside its last flange that stands off it by `open_by` mm, out of its plane."""
-    fold = folded_panel(length=1500.0)
-    first, last = fold.corners()[:, -1]
-    along, across, up = fold.directions[-1], fold.binormals()[-1], fold.normals[-1]
-    outline = np.array(
-        [last, first, first + 600.0 * across, first + 900.0 * across + 750.0 * along, last + 600.0 * across]
-    )
-    plate = PolygonShape(name="plate", feature="planar-polygon", outline=outline + open_by * up, normal=up)
-    apart = alone(fold, plate)
-    return replace(apart, seams=(Seam(panels=(0, 1), edges=(3, 0), reversed=True),))
 
 
 @pytest.mark.parametrize("open_by", [0.0, 6.0])

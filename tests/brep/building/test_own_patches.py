@@ -7,7 +7,7 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Patch, Plane
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
-from tests.brep.building.test_every_feature import assert_written_as_it_is, check_exact
+from tests.built import assert_written_as_it_is, check_exact
 from tests.instances import random_shapes
 from tests.known_panels import alone
 from tests.own_patches import AngleFirst, ByGirth, ByRoot, CurvedBy

@@ -20,7 +20,7 @@ from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.survey import survey
 from cadpanel.errors import CadpanelError, DeliveryError
 from cadpanel.reference.settings import ReferenceSettings
-from tests.brep.proof.test_certificate import Delivery, strip
+from tests.certified import Delivery, strip
 from tests.drawn import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products

@@ -10,7 +10,7 @@ from cadpanel.brep.files.xcaf import parts_of
 from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.brep.step.file import read_step_shapes, write_step
-from tests.brep.files.test_names import nested
+from tests.named_products import nested
 from tests.shapes import random_panel
 
 

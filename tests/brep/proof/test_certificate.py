@@ -17,36 +17,14 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from cadpanel.brep.building.sheet import build_skin, build_solid
 from cadpanel.brep.isolation import client
 from cadpanel.brep.proof import parallel
-from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.proof.certificate import ExpectedSeam
 from cadpanel.brep.proof.inspection import Inspector, inspect_packed
 from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.shape import PanelShape
-from cadpanel.geometry.volume import sheet_volume
-from tests.shapes import folded_panel, moved, random_panel
-
-THICKNESS = 3.0
-GAP = 0.25
-
-
-def expected(shape: PanelShape) -> ExpectedPanel:
-    built = shape.straightened().shape
-    kinds: list[PatchKind] = [
-        "plane" if not isinstance(patch, ConePatch) else "cone" if patch.half_angle else "cylinder"
-        for patch in built.patches
-    ]
-    volume = sheet_volume(built, THICKNESS)
-    return ExpectedPanel(name=shape.name, volume=volume, kinds=tuple(kinds), corners=built.corners())
-
-
-def strip() -> list[PanelShape]:
-    """Three cylindrical panels in a row, a quarter of a millimetre apart."""
-    return [replace(moved(folded_panel(), (i * (1000.0 + GAP), 0.0, 0.0)), name=f"P{i}") for i in range(3)]
-
+from tests.certified import GAP, SEAMS, Delivery, strip
+from tests.shapes import folded_panel, random_panel
 
 # A second interpreter whose kernel crashes over a file of one name.
 DIES = """
@@ -66,23 +44,6 @@ def crash(path):
 inspection.open_step = crash
 server.main()
 """
-SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), edges=("end 1", "end 0"), gap=GAP) for i in range(2)]
-
-
-class Delivery:
-    def __init__(self, folder, shapes):
-        self.panels_step, self.skins_step = folder / "panels.step", folder / "skins.step"
-        self.expected = [expected(shape) for shape in shapes]
-        self.solids = {shape.name: build_solid(shape, THICKNESS) for shape in shapes}
-        self.skins = {shape.name: build_skin(shape) for shape in shapes}
-        self.write()
-
-    def write(self):
-        for path, shapes in ((self.panels_step, self.solids), (self.skins_step, self.skins)):
-            write_step(path, [(name, shape, None) for name, shape in shapes.items()], title=path.stem)
-
-    def certify(self, seams=SEAMS, helper=None):
-        return certify(self.panels_step, self.skins_step, self.expected, seams, helper)
 
 
 @pytest.fixture

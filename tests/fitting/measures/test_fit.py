@@ -20,8 +20,8 @@ from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.reference.model import Seam
 from cadpanel.reference.strip import strip_of
 from tests.delivered import fitted as strip
-from tests.fitting.test_grids import fitted as fitted_grid
-from tests.fitting.test_grids import gable
+from tests.fitted_grids import fitted as fitted_grid
+from tests.fitted_grids import gable
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone, renumbered
 from tests.known_panels import moved as moved_reference

@@ -210,7 +210,7 @@ THROUGH_A_DOOR = {
     "cadpanel.fitting.measures.deviation": "tests/fitting/measures/test_fit.py",
     "cadpanel.fitting.measures.drift": "tests/fitting/measures/test_fit.py",
     "cadpanel.fitting.measures.seams": "tests/fitting/measures/test_fit.py",
-    "cadpanel.fitting.methods.balance": "tests/fitting/test_methods.py",
+    "cadpanel.fitting.methods.balance": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",
     "cadpanel.fitting.start.chains": "tests/fitting/test_every_feature.py",

@@ -6,6 +6,7 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
@@ -72,13 +73,25 @@ def inspect(
 
 
 def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> ReferenceSettings:
+    _require(settings, ReferenceSettings | None, "how a file is read is told by ReferenceSettings")
     # The settings bring every form that a keyword may have into one.
     given = {field.name: getattr(settings, field.name) for field in fields(ReferenceSettings)} if settings else {}
     return ReferenceSettings(**cast("dict[str, Any]", {**given, **changes}))
 
 
 def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
+    _require(settings, FitSettings | None, "how panels are fitted is told by FitSettings")
     return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
+
+
+def _require(given: object, kind: Any, what: str) -> None:
+    """Refuse what is of another kind; the type checkers of callers would have said so.
+
+    Raises:
+        SettingsError: saying what is wanted.
+    """
+    if not isinstance(given, kind):
+        raise SettingsError(f"{what}, not {given!r:.80}")
 
 
 def fit(
@@ -100,9 +113,7 @@ def fit(
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: a setting is out of its range.
     """
-    given: object = reference
-    if not isinstance(given, Reference):
-        raise SettingsError(f"what is fitted is a reference as read() gives it, not {given!r}")
+    _require(reference, Reference, "what is fitted is a reference as read() gives it")
     return fit_reference(reference, _asked(settings, changes), progress)
 
 
@@ -130,13 +141,18 @@ def compare(
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
     """
-    from cadpanel.delivery.records.table1 import comparison_record, write_comparison_folder
+    from cadpanel.delivery.folder import COMPARISON, delivery_folder
+    from cadpanel.delivery.records.comparison import write_comparison
+    from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference
 
+    _require(reference, Reference, "what is compared is a reference as read() gives it")
     how = _asked(settings, changes)
-    comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))
-    if out is not None:
-        write_comparison_folder(comparison, Path(out), overwrite=overwrite)
+    # Refused before the fits, which take their time.
+    with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
+        comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))
+        if folder is not None:
+            write_comparison(comparison, folder / COMPARISON)
     return comparison
 
 

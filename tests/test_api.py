@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import build123d as bd
 import cadquery as cq
@@ -98,3 +98,35 @@ def test_a_file_name_is_no_reference() -> None:
 def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
     with pytest.raises(cp.PanelError, match="the sheet thickness is"):
         cp.build_solid(fitted().shape("N 2"), cast("float", thickness))
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (
+            lambda of: cp.fit(of, cast(Any, cp.ReferenceSettings())),
+            "is told by FitSettings, not ReferenceSettings",
+        ),
+        (
+            lambda of: cp.fit(of, cast(Any, {"seed": 1})),
+            "how panels are fitted is told by FitSettings, not {'seed': 1}",
+        ),
+        (lambda _: cp.fit(cast(Any, None)), "what is fitted is a reference as read\\(\\) gives it, not None"),
+        (lambda _: cp.compare(cast(Any, None)), "what is compared is a reference as read\\(\\) gives it, not None"),
+        (
+            lambda _: cp.read("a.step", cast(Any, cp.FitSettings())),
+            "is told by ReferenceSettings, not FitSettings",
+        ),
+    ],
+)
+def test_what_is_of_another_kind_is_a_settings_error(call: Any, words: str) -> None:
+    with pytest.raises(cp.SettingsError, match=words):
+        call(strip())
+
+
+def test_a_comparison_refuses_its_folder_before_it_fits(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine", encoding="utf-8")
+    told: list[object] = []
+    with pytest.raises(cp.DeliveryError, match="exists already"):
+        cp.compare(strip(), out=tmp_path, progress=lambda *step: told.append(step))
+    assert told == []

@@ -7,6 +7,7 @@ import sys
 import warnings
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
+from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
@@ -16,7 +17,7 @@ from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.inspect import inspect
 from cadpanel.cli.verify import verify
-from cadpanel.errors import CadpanelError, ProofError
+from cadpanel.errors import CadpanelError, ProofError, SettingsError
 
 EXIT_NOT_HELD = 1
 """The command ran, but a tolerance or a proof does not hold."""
@@ -44,6 +45,11 @@ def cadpanel(
     ] = False,
 ) -> None:
     """Fit developable panels to a free-form building skin and deliver them as exact solids in STEP."""
+    del version  # the callback has shown it
+    try:
+        Path.cwd()
+    except FileNotFoundError:
+        raise SettingsError("the folder that this was started in no longer exists: change to another one") from None
 
 
 for command in COMMANDS:

@@ -64,7 +64,9 @@ class FitResult:
     def shortfall(self) -> str | None:
         """None if the tolerance and all limits hold, else one sentence on the worst seam or panel, and why it ended."""
         missed = self._missed()
-        return missed and f"{missed}; the search stopped as {self.stopped.value}"
+        if missed is None or self.stopped is Stop.HELD:  # what is held is; it is another limit that is missed
+            return missed
+        return f"{missed}; the search stopped as {self.stopped.value}"
 
     def _missed(self) -> str | None:
         """What does not hold, and what would help."""

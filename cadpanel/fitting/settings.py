@@ -120,7 +120,7 @@ class FitSettings:
             takes=str,
             read=lambda _, text: Weights.parse(text),
             metavar="gap=W,deviation=W,drift=W",
-            help="Weigh squares against each other instead of holding a gap tolerance.",
+            help="Weigh squares against each other instead of holding a gap tolerance and the limits on drift.",
         ),
     )
     drift_along: float = limit_setting(DriftAlong)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import version
+from pathlib import Path
 
 import pytest
 import typer
@@ -115,3 +116,19 @@ def test_the_program_starts_as_a_module() -> None:
     )
     assert answer.returncode == 2
     assert answer.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("words", [("features",), ("verify", "build"), ("inspect", "/nowhere/model.step")])
+def test_a_folder_that_is_gone_is_one_sentence(tmp_path: Path, words: tuple[str, ...]) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    program = f"""
+import os, sys
+from cadpanel.cli.main import main
+os.chdir({str(gone)!r})
+os.rmdir({str(gone)!r})
+sys.exit(main(sys.argv[1:]))
+"""
+    answer = subprocess.run([sys.executable, "-c", program, *words], capture_output=True, text=True, timeout=60)
+    assert answer.returncode == 2
+    assert answer.stderr == "The folder that this was started in no longer exists: change to another one.\n"

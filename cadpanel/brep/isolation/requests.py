@@ -78,7 +78,7 @@ def work_request(work: Work, path: Path, settings: ReferenceSettings) -> Request
     beside = settings.beside(path) if work == "panels" else None
     return Request(
         work=work,
-        folder=Path.cwd(),
+        folder=looked_for_in(path, ReferenceFileError),
         path=path,
         argument=settings,
         stages=(
@@ -86,6 +86,22 @@ def work_request(work: Work, path: Path, settings: ReferenceSettings) -> Request
             Stage(file=path.name, doing=DOING[work], seconds=SECONDS_TO_WORK),
         ),
     )
+
+
+def looked_for_in(path: Path, refusal: type[CadpanelError]) -> Path:
+    """The folder in which names of files are looked for: the current one, or the file's own where that is gone.
+
+    Raises:
+        CadpanelError: the current folder is gone, and the file is named by its place in it.
+    """
+    try:
+        return Path.cwd()
+    except FileNotFoundError:
+        if path.is_absolute():
+            return path.parent
+        raise refusal(
+            f"'{path}' cannot be found: the folder that the program stands in no longer exists; change to another one."
+        ) from None
 
 
 def reading(path: Path) -> Stage:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import cast
 
 from cadpanel.brep.isolation.client import READER, Interpreter
-from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, seconds_to_read
+from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.errors import DeliveryError
 
@@ -56,7 +56,13 @@ class _File:
             crashed=WRITE_AGAIN,
             refusal=DeliveryError,
         )
-        request = Request(work=work, folder=Path.cwd(), path=self._path, argument=argument, stages=(stage,))
+        request = Request(
+            work=work,
+            folder=looked_for_in(self._path, DeliveryError),
+            path=self._path,
+            argument=argument,
+            stages=(stage,),
+        )
         return self._interpreter.ask(request)
 
     def open(self) -> int:

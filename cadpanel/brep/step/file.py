@@ -102,15 +102,15 @@ def open_step(path: str | os.PathLike[str], *, heal: bool = False) -> OpenStep:
     """The same, for longer work on the shapes."""
     target = Path(path)
     if not target.is_file():
-        raise DeliveryError(f"{target} cannot be read: there is no such file.")
+        raise DeliveryError(f"'{target}' cannot be read: there is no such file.")
     try:
         step = read_document(target, labels=False, heal=heal)
     except StepFault as error:
         why = f"is damaged ({error.fault})" if error.fault else "is not a complete STEP file"
-        raise DeliveryError(f"{target} cannot be read: it {why}.") from error
+        raise DeliveryError(f"'{target}' cannot be read: it {why}.") from error
     except Standard_Failure as error:
-        raise DeliveryError(f"{target} cannot be read: it makes the CAD kernel fail ({error}).") from error
+        raise DeliveryError(f"'{target}' cannot be read: it makes the CAD kernel fail ({error}).") from error
     shapes = products_of(step.document)
     if not shapes:
-        raise DeliveryError(f"{target} cannot be read: it holds no shapes.")
+        raise DeliveryError(f"'{target}' cannot be read: it holds no shapes.")
     return OpenStep(step, shapes)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
-from cadpanel.delivery.folder import COMPARISON, delivery_folder
-from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel, write_comparison
+from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel
 from cadpanel.delivery.records.from_fit import reference_record, seam_names
 from cadpanel.delivery.records.settings import comparison_settings_record
 from cadpanel.delivery.records.summary import summary
@@ -29,16 +27,6 @@ def comparison_record(reference: Reference, settings: FitSettings, results: Sequ
         seams=seam_names(reference),
         columns=tuple(map(_record, results)),
     )
-
-
-def write_comparison_folder(comparison: ComparisonModel, out: Path, *, overwrite: bool = False) -> None:
-    """Write a folder with compare.json, whole or not at all.
-
-    Raises:
-        DeliveryError: the folder is refused or cannot be written.
-    """
-    with delivery_folder(out, overwrite=overwrite) as folder:
-        write_comparison(comparison, folder / COMPARISON)
 
 
 def _record(result: FitResult) -> ColumnModel:

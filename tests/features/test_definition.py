@@ -329,3 +329,11 @@ def test_a_radius_beyond_all_bounds_is_refused(radius):
 def test_two_planes_side_by_side_are_one_even_where_their_numbers_do_not_depend_on_each_other():
     with pytest.raises(SettingsError, match="the 2 planes of 'plane-plane' are one"):
         Feature(Plane(width=3.0, turn=0.0), Plane())
+
+
+@pytest.mark.parametrize(
+    ("value", "sign"),
+    [(None, 0), (0.0, 0), (2.0, 1), (-2.0, -1), ((0.0, 2.0), 1), ((-2.0, 0.0), -1), ((0.0, None), 1), ((-1.0, 1.0), 0)],
+)
+def test_the_sign_of_a_number_is_what_its_author_leaves_it(value, sign):
+    assert Number.of("sweep", "angle", value).sign == sign

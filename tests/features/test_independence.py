@@ -9,7 +9,9 @@ import pytest
 from cadpanel.errors import SettingsError
 from cadpanel.features import independence
 from cadpanel.features.feature import Feature
+from cadpanel.features.independence import LARGEST_FIXED, typical_values
 from cadpanel.features.patches import Cone, Cylinder, Plane
+from tests.own_patches import ByRoot, CurvedBy
 
 
 def named_dependent(make):
@@ -85,3 +87,17 @@ def test_a_feature_is_independent_if_it_is_so_on_one_trial_however_large_its_num
     trials[:] = np.diag((1.0, 1e-12))
     with pytest.raises(SettingsError, match="depend on each other"):
         independence.refuse_dependent(feature)
+
+
+@pytest.mark.parametrize(
+    ("patch", "fixed", "scaled"),
+    [
+        (ByRoot(root=20.0), 20.0, LARGEST_FIXED**0.5),  # 400 mm wide
+        (CurvedBy(curvature=1.0 / 500.0), 1.0 / 500.0, 1.0 / LARGEST_FIXED),  # a radius of 500 mm
+        (Cylinder(radius=500.0), 500.0, LARGEST_FIXED),
+    ],
+)
+def test_what_is_fixed_is_tried_at_one_size_in_whatever_unit_it_is_told(patch, fixed, scaled):
+    of = Feature(patch, Cone())
+    (place,) = (i for i, number in enumerate(of.numbers) if number.fixed == fixed)
+    assert typical_values(of)[:, place] == pytest.approx(scaled)

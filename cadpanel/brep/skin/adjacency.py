@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from cadpanel.arrays import Array, IntArray
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.boundary import Edge
 from cadpanel.brep.skin.face_cleanup import SkinFace
 from cadpanel.geometry.order import order_in_space
@@ -222,18 +222,6 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     weights = np.concatenate([face.samples.weights for face in faces])
     points = np.concatenate([face.samples.points for face in faces])
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
-
-
-def levels(values: Array, tolerance: float) -> IntArray:
-    """(n,) the rank of values, in which those that follow each other within a tolerance share one.
-
-    Rounding would part two that lie on either side of a half.
-    """
-    order = np.argsort(values, kind="stable")
-    steps = np.concatenate([[0], np.cumsum(np.diff(values[order]) > tolerance)])
-    levels = np.empty(len(values), dtype=np.intp)
-    levels[order] = steps
-    return levels
 
 
 def _names(groups: Sequence[Sequence[SkinFace]]) -> list[str]:

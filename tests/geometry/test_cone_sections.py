@@ -104,3 +104,11 @@ def test_a_cut_along_the_axis_is_refused():
     _, _, frame = cone_of(shape)
     with pytest.raises(ValueError, match="does not cross the axis"):
         cut_cone(frame, shape.cut_points[0], frame.radial)
+
+
+@given(panels, st.integers(0, 1))
+def test_the_section_begins_within_the_first_turn_and_ends_within_one_more(shape, end):
+    _, _, frame = cone_of(shape)
+    section = elliptic_section(frame, cut_cone(frame, shape.cut_points[end], shape.cut_normals[end]))
+    assert 0.0 <= section.start < 2.0 * math.pi
+    assert 0.0 < section.stop - section.start < 2.0 * math.pi

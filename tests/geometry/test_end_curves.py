@@ -12,6 +12,7 @@ from cadpanel.geometry.end_curves import EndCurves, closest, seam_gap
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import dot
 from tests.known_panels import end_curve
+from tests.seams import backwards
 from tests.shapes import CHAINS, folded_panel, random_panel
 
 # Millimetres, on panels of 2 m that stand up to 20 m from the origin.
@@ -147,17 +148,7 @@ def test_a_seam_walked_the_other_way_has_the_same_gap(seed):
     """A panel turned end for end: its curve runs from the other side."""
     shape = random_panel(seed)
     curves = end_curve(shape, 1)
-    turned = EndCurves(
-        corners=curves.corners[:, ::-1],
-        p=curves.p[:, ::-1],
-        t=-curves.t[:, ::-1],
-        n=curves.n[:, ::-1],
-        radius=curves.radius[:, ::-1],
-        half_angle=-curves.half_angle[:, ::-1],
-        sweep=curves.sweep[:, ::-1],
-        cut_point=curves.cut_point,
-        cut_normal=-curves.cut_normal,
-    )
+    turned = backwards(curves)
     gap, kink = seam_gap(curves, turned)
     assert gap == pytest.approx(0.0, abs=CLOSEST)
     assert kink == pytest.approx(0.0, abs=1e-7)

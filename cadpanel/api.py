@@ -175,7 +175,7 @@ def deliver(
         skin_side: "outer": the skin is the sheet's outer face; "inner": its inner one.
         schema: of the STEP files, "AP242" or "AP214".
         overwrite: replace an existing delivery.
-        progress: told the step ("build", "write", "verify"), how much of it is done, and of how much.
+        progress: told the step ("compare", "build", "write", "verify"), how much of it is done, and of how much.
 
     Returns:
         What report.json holds.

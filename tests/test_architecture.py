@@ -220,7 +220,6 @@ THROUGH_A_DOOR = {
     "cadpanel.reference.alignment": "tests/reference/test_oriented_panel.py",
     "cadpanel.reference.inner_edges": "tests/reference/test_outline.py",
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",
-    "cadpanel.studies.table1": "tests/cli/test_compare.py",
     "cadpanel.terms.limits.chains": "tests/terms/test_limits.py",
 }
 

@@ -17,7 +17,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
 
-_READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone, two-stage", "Fit all at once"
+_READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
 
 
 @options.made_of_settings

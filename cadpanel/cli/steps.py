@@ -8,7 +8,12 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
 
-_BUILDING = {"build": "Build solids", "write": "Write STEP", "verify": "Read back and verify"}
+_DELIVERING = {
+    "compare": "Fit two-stage, to compare",
+    "build": "Build solids",
+    "write": "Write STEP",
+    "verify": "Read back and verify",
+}
 
 
 class Steps:
@@ -31,7 +36,7 @@ class Steps:
 
     def count(self, step: str, done: int, of: int) -> None:
         """Say how much of a step is done; begins it where it has not begun."""
-        name = _BUILDING.get(step, step)
+        name = _DELIVERING.get(step, step)
         if name not in self._tasks:
             self.begin(name)
         self._progress.update(self._tasks[name], completed=done, total=of, detail=f"{done} of {of}" if of > 1 else "")

@@ -43,7 +43,7 @@ def deliver(
         out: the folder; an existing one is refused unless `overwrite` is set.
         sheet: thickness, side and schema.
         overwrite: replace an existing delivery.
-        progress: told of the steps "build", "write" and "verify".
+        progress: told of the steps "compare", "build", "write" and "verify".
 
     Raises:
         PanelError: a panel cannot be built.
@@ -74,6 +74,10 @@ def fill_delivery(
     tell = progress or say_nothing
     with second_interpreter(len(result.shapes)) as helper:
         began = time.perf_counter()
+        tell("compare", 0, 1)
+        baselines = baselines_record(result)
+        tell("compare", 1, 1)
+        compared_at = time.perf_counter()
         built = build_panels(result.shapes, sheet, tell)
         panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
         built_at = time.perf_counter()
@@ -92,12 +96,12 @@ def fill_delivery(
         seams=seams,
         features=dict(Counter(panel.feature for panel in panels)),
         summary=summary(result.measures, result.local, result.settings),
-        baselines=baselines_record(result),
+        baselines=baselines,
         certificate=certificate,
         timing=TimingModel(
             read=seconds_to_read,
-            fit=result.seconds,
-            build=built_at - began,
+            fit=result.seconds + compared_at - began,
+            build=built_at - compared_at,
             write=written_at - built_at,
             verify=verified_at - written_at,
         ),

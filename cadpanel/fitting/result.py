@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
@@ -28,27 +29,36 @@ class FitResult:
         settings: how.
         shapes: the panels, in the order of the reference.
         measures: gaps, deviation and drift of this result.
-        local, two_stage: the same measures for the methods that it is held against.
+        baselines: what it is held against, fitted and measured when `local` or `two_stage` is first asked for.
         tolerance_met: whether every gap is within the tolerance, every limit kept and, where features are
             chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
-        seconds: time of the fit, the baselines included.
+        seconds: time of the fit, without the baselines.
     """
 
     reference: Reference
     settings: FitSettings
     shapes: tuple[Panel, ...]
     measures: Measures
-    local: Measures
-    two_stage: Measures
+    baselines: Baselines
     tolerance_met: bool
     starts: int
     agreed: int
     iterations: int
     stopped: Stop
     seconds: float
+
+    @property
+    def local(self) -> Measures:
+        """The same measures of every panel fitted alone."""
+        return self.baselines.local
+
+    @property
+    def two_stage(self) -> Measures:
+        """The same measures of the industry's two stages."""
+        return self.baselines.two_stage
 
     def shape(self, name: str) -> Panel:
         """The panel of that name.

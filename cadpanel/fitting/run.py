@@ -9,10 +9,11 @@ import numpy as np
 
 from cadpanel.arrays import IntArray
 from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.feature_choice import Choice, can_be_built
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
-from cadpanel.fitting.methods.catalogue import LOCAL, TWO_STAGE, method_for
+from cadpanel.fitting.methods.catalogue import LOCAL, method_for
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.result import FitResult, Progress
@@ -86,18 +87,17 @@ def _fit(
         if progress is not None:
             progress(how.method, round_, excess)
 
-    staged = TWO_STAGE.fit(posed, [local.unknowns], how)
-    made = {LOCAL: local, TWO_STAGE: staged}
     method = method_for(how)
-    chosen = made[method] if method in made else method.fit(posed, [local.unknowns], how, tell)
+    chosen = local if method == LOCAL else method.fit(posed, [local.unknowns], how, tell)
     measures = measure(panel_shapes(posed, chosen.unknowns), reference)
     return FitResult(
         reference=reference,
         settings=how,
         shapes=measures.shapes,
         measures=measures,
-        local=measure(panel_shapes(posed, local.unknowns), reference),
-        two_stage=measure(panel_shapes(posed, staged.unknowns), reference),
+        baselines=Baselines(
+            reference=reference, settings=how, problem=posed, alone=local.unknowns, measured={how.method: measures}
+        ),
         tolerance_met=keeps_limits(measures, how),
         starts=chosen.starts,
         agreed=chosen.agreed,

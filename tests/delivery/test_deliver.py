@@ -143,7 +143,7 @@ def test_the_same_fit_gives_the_same_bytes(tmp_path: Path) -> None:
 def test_the_steps_are_told_in_their_order(tmp_path: Path) -> None:
     told: list[tuple[str, int, int]] = []
     deliver(fitted(), tmp_path / "out", progress=lambda *step: told.append(step))
-    assert [step for step, done, _ in told if done == 0] == ["build", "write", "verify"]
+    assert [step for step, done, _ in told if done == 0] == ["compare", "build", "write", "verify"]
     assert all(done <= of for _, done, of in told)
 
 

@@ -211,7 +211,10 @@ class CertificateModel(Record):
 
 
 class TimingModel(Record):
-    """Wall-clock seconds of each step; `read` is 0 where the reference was read before, in another program."""
+    """Wall-clock seconds of each step.
+
+    `read` is 0 where the reference was read before, in another program; `fit` counts the baselines, too.
+    """
 
     read: NonNegative
     fit: NonNegative

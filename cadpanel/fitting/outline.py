@@ -8,7 +8,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.fitting.start.begin import Start
 from cadpanel.reference.model import PanelReference, Reference
-from cadpanel.reference.strip import strip_of
+from cadpanel.reference.strip import strips_of
 from cadpanel.terms.outline import Limited, Outline
 from cadpanel.terms.state import State
 
@@ -19,6 +19,7 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
     corners = np.zeros(started.shape)
     sided = np.zeros(layout.panels, dtype=bool)
     most = started.shape[1]
+    ways = _ways(reference, layout)
     along, across = _Rows(layout.panels, most, 1), _Rows(layout.panels, most, 3)
     for i, panel in enumerate(reference.panels):
         feature, axes = layout.feature_of[i], begin.axes[i]
@@ -29,14 +30,27 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
             continue
         sided[i] = True
         rulings = count // 2
-        strip = strip_of(panel, rulings)
         own = started[i, :count].reshape(2, rulings, 3) * begin.length @ axes.T + begin.origins[i]
         corners[i, :count] = (_on_outline(panel, own).reshape(-1, 3) - begin.origins[i]) @ axes / begin.length
-        way, gauge = strip.direction.reshape(-1, 3) @ axes, strip.gauge.reshape(-1, 3) @ axes
+        way, gauge = (vectors @ axes for vectors in ways[i])
         along.set(i, np.arange(count), gauge[:, None])
         outer = np.array([0, rulings - 1, rulings, count - 1])
         across.set(i, outer, np.eye(3) - way[outer, :, None] * gauge[outer, None, :])
     return Outline(corners=corners, along=along.limited(), across=across.limited(), sided=sided)
+
+
+def _ways(reference: Reference, layout: Layout) -> dict[int, tuple[Array, Array]]:
+    """For each panel with four sides the directions (corners, 3) along the strip, and the gauges (corners, 3)."""
+    members: dict[int, list[int]] = {}
+    for i, feature in enumerate(layout.feature_of):
+        if feature.four_sided:
+            members.setdefault(feature.corner_count, []).append(i)
+    ways: dict[int, tuple[Array, Array]] = {}
+    for count, own in members.items():
+        strips = strips_of([reference.panels[i] for i in own], count // 2)
+        flat = (vectors.reshape(len(own), count, 3) for vectors in (strips.direction, strips.gauge))
+        ways |= zip(own, zip(*flat, strict=True), strict=True)
+    return ways
 
 
 class _Rows:

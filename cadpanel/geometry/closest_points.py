@@ -90,6 +90,18 @@ def closest_points(on: Stations, of: IntArray, points: Array) -> tuple[IntArray,
     return column[chosen], w[chosen], np.sqrt(least)
 
 
+def distances_near(chains: ConicChains, columns: IntArray, w: Array, points: Array) -> Array:
+    """Distances (n,) from the points (3, n) to places near w (n,) of the pieces in the columns (n,).
+
+    One step of Newton's method from there, or no step where it leads away: never less than the least distance, and
+    about as much where the closest point is near.
+    """
+    curves = seen_from(np.take(chains.curves, columns, axis=1), points)
+    _, stepped = _step(curves, w)
+    squares = [inner(away, away) for away in (followed(curves, w), followed(curves, stepped))]
+    return np.sqrt(np.minimum(*squares))
+
+
 def _starts(on: Stations, of: IntArray, points: Array) -> tuple[IntArray, IntArray, IntArray, Array]:
     """Where descents begin: which point, piece and station of it, and the squared distance (m,) there; by points."""
     apart = np.take(on.points, of, axis=1)

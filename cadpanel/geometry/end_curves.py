@@ -11,7 +11,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.closest_points import closest_points, stations
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains
 from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.vectors import cross, dot
@@ -76,16 +75,6 @@ class EndCurves:
         curved = np.any(self.sweep != 0.0, axis=0)
         parts = [i + np.arange(n) / n for i, n in enumerate(np.where(curved, _ARC_POINTS, 4))]
         return np.append(np.concatenate(parts), float(self.patches))
-
-
-def closest(curves: EndCurves, points: Array) -> tuple[Array, Array]:
-    """Distance (s, q) of each point (s, q, 3) to its curve, and the parameter (s, q) of the closest point."""
-    origin = curves.corners[:, 0]
-    chains = as_chains(curves, origin)
-    count, each, _ = points.shape
-    flat = np.moveaxis(points - origin[:, None], 2, 0).reshape(3, -1)
-    column, share, distance = closest_points(stations(chains), np.repeat(np.arange(count), each), flat)
-    return distance.reshape(count, each), (column % curves.patches + share).reshape(count, each)
 
 
 def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:

@@ -5,6 +5,7 @@ All lengths are in millimetres, in the coordinates of the file.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -110,7 +111,7 @@ class PanelReference:
     def length(self) -> float:
         """Mean length of the sides' chords, from end to end; where there are no ends, of all edges' chords, mm."""
         chords = self.sides if self.four_sided else self.edges
-        return float(np.mean([np.linalg.norm(chord[-1] - chord[0]) for chord in chords]))
+        return sum(math.dist(chord[0], chord[-1]) for chord in chords) / len(chords)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

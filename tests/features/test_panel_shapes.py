@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from cadpanel.features.catalogue import feature
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature
-from cadpanel.fitting.measures.edges import edge_curves
+from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
@@ -47,11 +47,12 @@ def test_edges_of_shapes_are_those_of_the_measures(name, seed):
     problem = made_problem(of, seed)
     unknowns = random_unknowns(of, seed, problem.panels)
     shapes = panel_shapes(problem, unknowns)
+    edges = PanelEdges.of(shapes)
     for index, edge in enumerate(of.edges):
-        curves = edge_curves(shapes, [index] * len(shapes), problem.place.centre)
+        curves = edges.curves[edges.batch[0, index]].take(edges.row[:, index])
         for i, shape in enumerate(shapes):
             corners = edge_corners(shape.corners(), edge.name)
-            assert curves.corners[i] + problem.place.centre == pytest.approx(corners, abs=SAME_POINT)
+            assert curves.corners[i] + edges.centre == pytest.approx(corners, abs=SAME_POINT)
 
 
 @every_chain

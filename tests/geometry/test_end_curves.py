@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.geometry.cone import cone_distance, plane_distance
-from cadpanel.geometry.end_curves import EndCurves, closest, seam_gap
+from cadpanel.geometry.end_curves import EndCurves, seam_gap
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import dot
+from tests.closest import closest
 from tests.known_panels import end_curve
 from tests.seams import backwards
 from tests.shapes import CHAINS, folded_panel, random_panel

@@ -13,6 +13,7 @@ from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patch_under import patch_under
 from cadpanel.geometry.vectors import cross
+from cadpanel.reference.model import Reference
 
 # Panels worked on together: their points and distances stay in the processor's cache.
 _CHUNK = 64
@@ -32,6 +33,20 @@ def deviations(shapes: Sequence[Panel], points: Array) -> Array:
             part = members[start : start + _CHUNK]
             found[part] = _distances([shapes[i] for i in part], kinds, points[part])
     return found
+
+
+def outline_distances(shapes: Sequence[Panel], reference: Reference) -> Array:
+    """(panels, q) distance of the points of the references' outlines to the skins' patches, mm.
+
+    Where outlines have fewer points than others, one of their points stands there again.
+    """
+    outlines = [np.concatenate(panel.edges) for panel in reference.panels]
+    most = max(len(outline) for outline in outlines)
+    points = np.empty((len(outlines), most, 3))
+    for i, outline in enumerate(outlines):
+        points[i, : len(outline)] = outline
+        points[i, len(outline) :] = outline[0]
+    return np.abs(deviations(shapes, points))
 
 
 def _distances(shapes: Sequence[Panel], kinds: Sequence[bool], points: Array) -> Array:

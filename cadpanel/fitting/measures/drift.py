@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.fitting.measures.edges import alike
-from cadpanel.geometry.panel import Panel
+from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.geometry.vectors import dot, norm
 from cadpanel.reference.model import Reference
-from cadpanel.reference.strip import strip_of
+from cadpanel.reference.strip import strips_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,22 +29,19 @@ class Drifts:
     across: Array
 
 
-def drifts(shapes: Sequence[Panel], reference: Reference) -> Drifts:
+def drifts(edges: PanelEdges, reference: Reference) -> Drifts:
     """The drift of all panels."""
-    found = Drifts(*np.zeros((3, len(shapes))))
-    for members in alike(shapes):
-        corners = np.array([shapes[i].corners() for i in members])
-        measured = _of_chains if shapes[members[0]].four_sided else _of_polygons
-        found.whole[members], found.along[members], found.across[members] = measured(corners, reference, members)
+    found = Drifts(*np.zeros((3, len(reference.panels))))
+    for group in edges.groups:
+        own, measured = group.members, _of_chains if group.four_sided else _of_polygons
+        found.whole[own], found.along[own], found.across[own] = measured(group.corners, reference, own)
     return found
 
 
 def _of_chains(corners: Array, reference: Reference, members: IntArray) -> tuple[Array, Array, Array]:
     """Of n chains with corners (n, 2, k + 1, 3)."""
-    strips = [strip_of(reference.panels[i], corners.shape[2]) for i in members]
-    along = np.array([strip.along(own) for strip, own in zip(strips, corners, strict=True)])
-    outer = np.array([strip.outer_drift(own) for strip, own in zip(strips, corners, strict=True)])
-    way = np.array([strip.direction[:, [0, -1]] for strip in strips])
+    strips = strips_of([reference.panels[i] for i in members.tolist()], corners.shape[2])
+    along, outer, way = strips.along(corners), strips.outer_drift(corners), strips.direction[:, :, [0, -1]]
     across = outer - dot(outer, way)[..., None] * way
     return norm(outer).max(axis=(1, 2)), along.max(axis=(1, 2)), norm(across).max(axis=(1, 2))
 

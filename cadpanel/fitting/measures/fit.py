@@ -19,10 +19,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.measures.boundary import outline_distances, overhang
-from cadpanel.fitting.measures.deviation import deviations
+from cadpanel.fitting.measures.boundary import overhang
+from cadpanel.fitting.measures.deviation import deviations, outline_distances
 from cadpanel.fitting.measures.drift import drifts
-from cadpanel.fitting.measures.seams import along_seams, corner_gaps
+from cadpanel.fitting.measures.edges import PanelEdges
+from cadpanel.fitting.measures.seams import corner_gaps, gaps_and_kinks
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
@@ -81,16 +82,17 @@ def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
     samples = SampleArrays.of(reference)
     distance, weight = deviations(shapes, samples.points), samples.weights
     largest = _largest(shapes, reference, distance, weight)
-    gaps, kinks = along_seams(shapes, reference.seams)
-    drifted = drifts(shapes, reference)
+    edges = PanelEdges.of(shapes)
+    gaps, kinks = gaps_and_kinks(edges, reference.seams)
+    drifted = drifts(edges, reference)
     return Measures(
-        corner_gaps=corner_gaps(shapes, reference.seams),
+        corner_gaps=corner_gaps(edges, reference.seams),
         seam_gap=gaps,
         kink=kinks,
         rms_deviation=np.sqrt(np.sum(weight * distance**2, axis=1) / weight.sum(axis=1)),
         max_deviation=largest,
         overall_rms=float(np.sqrt(np.sum(weight * distance**2) / weight.sum())),
-        hausdorff=np.maximum(largest, overhang(shapes, reference)),
+        hausdorff=np.maximum(largest, overhang(edges, reference)),
         drift=drifted.whole,
         drift_along=drifted.along,
         drift_across=drifted.across,

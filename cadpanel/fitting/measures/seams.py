@@ -2,72 +2,81 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
-from cadpanel.features.panel_edges import Edge
-from cadpanel.fitting.measures.edges import corners_along, edge_curves, edges_of
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import Seam
 
-_Pieces = tuple[bool, ...]
-
 
 def along_seams(shapes: Sequence[Panel], seams: Sequence[Seam]) -> tuple[Array, Array]:
     """(seams,) gaps along whole seams in mm, and kinks in radians."""
+    return gaps_and_kinks(PanelEdges.of(shapes), seams)
+
+
+def gaps_and_kinks(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, Array]:
+    """The same of panels whose edges are known."""
     gaps, kinks = np.zeros(len(seams)), np.zeros(len(seams))
-    met = [_Met.of(shapes, seam) for seam in seams]
-    kinds: dict[tuple[_Pieces, _Pieces], list[int]] = {}
-    for i, one in enumerate(met):
-        kinds.setdefault((one.first.curved, one.second.curved), []).append(i)
-    centre = np.mean([shape.corners().mean(axis=(0, 1)) for shape in shapes], axis=0)
-    for members in kinds.values():
-        first, second = (_edges(shapes, [met[i] for i in members], side, centre) for side in (0, 1))
-        gaps[members], kinks[members] = seam_gap(first, second)
+    for met in _batches(edges, seams):
+        gaps[met.index], kinks[met.index] = seam_gap(*met.curves(edges))
     return gaps, kinks
 
 
-def corner_gaps(shapes: Sequence[Panel], seams: Sequence[Seam]) -> tuple[Array, ...]:
+def corner_gaps(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, ...]:
     """For each seam the gaps (corners,) at the corners that meet, in the order of its first panel, mm.
 
     All corners meet where both edges have the same pieces, else only the two outermost.
     """
-    return tuple(_Met.of(shapes, seam).corner_gaps(shapes) for seam in seams)
+    gaps: dict[int, Array] = {}
+    for met in _batches(edges, seams):
+        first, second = met.curves(edges)
+        pieces, others = (edges.pieces[batch] for batch in met.batches)
+        for backwards, way in ((False, 1), (True, -1)):
+            which = met.reversed == backwards
+            one, other = first.corners[which], second.corners[which, ::way]
+            if pieces != others[::way]:
+                one, other = one[:, [0, -1]], other[:, [0, -1]]
+            gaps |= zip(met.index[which].tolist(), norm(one - other), strict=True)
+    return tuple(gaps[i] for i in range(len(seams)))
 
 
 @dataclass(frozen=True, slots=True)
 class _Met:
-    """Two edges that meet, the one of the lower panel first."""
+    """m seams between edges of two batches, the edge of the lower panel first.
 
-    panels: tuple[int, int]
-    edges: tuple[int, int]
-    first: Edge
-    second: Edge
-    reversed: bool
+    Attributes:
+        index: (m,) which seams.
+        batches: of the edges.
+        rows: (m, 2) the edges' rows there.
+        reversed: (m,) whether the two edges run against each other.
+    """
 
-    @staticmethod
-    def of(shapes: Sequence[Panel], seam: Seam) -> _Met:
-        """The edges of a seam as the panels have them."""
-        order = (0, 1) if seam.panels[0] < seam.panels[1] else (1, 0)
-        panels, edges = ((which[order[0]], which[order[1]]) for which in (seam.panels, seam.edges))
-        first, second = (edges_of(shapes[panel])[edge] for panel, edge in zip(panels, edges, strict=True))
-        return _Met(panels, edges, first, second, seam.reversed)
+    index: IntArray
+    batches: tuple[int, int]
+    rows: IntArray
+    reversed: BoolArray
 
-    def corner_gaps(self, shapes: Sequence[Panel]) -> Array:
-        """(corners,) mm."""
-        one, other = (corners_along(shapes[p], e) for p, e in zip(self.panels, (self.first, self.second), strict=True))
-        pieces = self.second.curved
-        if self.reversed:
-            other, pieces = other[::-1], pieces[::-1]
-        if pieces != self.first.curved:
-            one, other = one[[0, -1]], other[[0, -1]]
-        return norm(one - other)
+    def curves(self, edges: PanelEdges) -> tuple[EndCurves, EndCurves]:
+        """The edges on both sides."""
+        first, second = (edges.curves[batch].take(self.rows[:, side]) for side, batch in enumerate(self.batches))
+        return first, second
 
 
-def _edges(shapes: Sequence[Panel], met: Sequence[_Met], side: int, centre: Array) -> EndCurves:
-    return edge_curves([shapes[one.panels[side]] for one in met], [one.edges[side] for one in met], centre)
+def _batches(edges: PanelEdges, seams: Sequence[Seam]) -> Iterator[_Met]:
+    if not seams:
+        return
+    panels, on = (np.array([getattr(seam, what) for seam in seams], dtype=np.intp) for what in ("panels", "edges"))
+    swapped = panels[:, 0] >= panels[:, 1]
+    panels[swapped], on[swapped] = panels[swapped, ::-1], on[swapped, ::-1]
+    batch, row = edges.batch[panels, on], edges.row[panels, on]
+    backwards = np.array([seam.reversed for seam in seams], dtype=np.bool_)
+    pairs, which = np.unique(batch, axis=0, return_inverse=True)
+    for pair, (first, second) in enumerate(pairs.tolist()):
+        index = np.flatnonzero(which.reshape(-1) == pair)
+        yield _Met(index, (first, second), row[index], backwards[index])

@@ -20,7 +20,7 @@ from cadpanel.fitting.start.frames import Frames, Given, reframe
 from cadpanel.fitting.start.segmentation import ambiguous, cut_profile
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
-from cadpanel.reference.strip import end_plane
+from cadpanel.reference.strip import end_planes
 from cadpanel.reference.suitability import check_corners, check_fold
 
 # A curved patch turns by at least this at the start, radians: where it turned by nothing its radius would be unknown.
@@ -226,10 +226,12 @@ def _lay_cuts(panels: Sequence[PanelReference], feature: Feature, frames: Frames
     """Lay each cut plane through the outline's end."""
     for end, where in enumerate(feature.cut_numbers):
         tilt = feature.numbers[where[2]].fixed is None
-        for i, panel in enumerate(panels):
-            local = (panel.ends[end] - frames.origins[i]) @ frames.axes[i] / length
-            position, normal = end_plane(local, tilt=tilt)
-            values[i, where] = position, normal[0], normal[2]
+        lines = [
+            (panel.ends[end] - origin) @ axes / length
+            for panel, origin, axes in zip(panels, frames.origins, frames.axes, strict=True)
+        ]
+        positions, normals = end_planes(lines, tilt=tilt)
+        values[:, where] = np.column_stack([positions, normals[:, 0], normals[:, 2]])
     if feature.tied:
         for number, source in feature.tied:
             values[:, source] = 0.5 * (values[:, source] + values[:, number])

@@ -18,8 +18,9 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.reference.model import Seam
-from cadpanel.reference.strip import strip_of
+from cadpanel.reference.strip import strips_of
 from tests.delivered import fitted as strip
+from tests.elsewhere import elsewhere, shaken, turn
 from tests.fitted_grids import fitted as fitted_grid
 from tests.fitted_grids import gable
 from tests.instances import random_polygon, random_shapes
@@ -36,25 +37,6 @@ TO_EDGE = 0.12
 FOLDED = [
     name for name in CATALOGUE if sum(patch.kind != "plane" for patch in feature(name).patches) and "plane" in name
 ]
-
-
-def shaken(shapes, seed, by=3.0):
-    """The panels moved by some mm each, so that there is something to measure."""
-    random = np.random.default_rng(seed)
-    return [elsewhere(shape, np.eye(3), by * random.normal(size=3)) for shape in shapes]
-
-
-def elsewhere(shape, turn, shift):
-    if isinstance(shape, PolygonShape):
-        return replace(shape, outline=shape.outline @ turn.T + shift, normal=turn @ shape.normal)
-    return replace(
-        shape,
-        points=shape.points @ turn.T + shift,
-        directions=shape.directions @ turn.T,
-        normals=shape.normals @ turn.T,
-        cut_points=shape.cut_points @ turn.T + shift,
-        cut_normals=shape.cut_normals @ turn.T,
-    )
 
 
 @cache
@@ -110,11 +92,6 @@ def compare(one: Measures, other: Measures, within: float) -> None:
             assert [len(gaps) for gaps in a] == [len(gaps) for gaps in b]
             a, b = np.concatenate([*a, np.zeros(0)]), np.concatenate([*b, np.zeros(0)])
         assert np.max(np.abs(np.asarray(a) - np.asarray(b)), initial=0.0) <= within, field.name
-
-
-def turn(seed):
-    axes, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    return axes * np.sign(np.linalg.det(axes))
 
 
 # ----------------------------------------------------------------------------------------------------------------- laws
@@ -259,9 +236,9 @@ def test_inner_corners_may_slide_along_an_end():
         folded_panel(cut_normals=2 * [(1.0, 0.2, 0.1)]),
         folded_panel(sweep=0.9, cut_normals=2 * [(1.0, 0.2, 0.1)]),
     )
-    strip_ = strip_of(alone(fold).panels[0], 4)
+    strips = strips_of(alone(fold).panels, 4)
     assert np.abs(fold.corners() - other.corners())[:, 2].max() > 10.0
-    assert strip_.along(other.corners())[:, 1:-1] == pytest.approx(np.zeros((2, 2)), abs=EXACT)
+    assert strips.along(other.corners()[None])[0, :, 1:-1] == pytest.approx(np.zeros((2, 2)), abs=EXACT)
 
 
 def test_the_corner_that_drifted_most_counts():

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cadpanel.geometry.closest_points import distances_near
 from cadpanel.geometry.cone import cone_distance, plane_distance
-from cadpanel.geometry.end_curves import EndCurves, seam_gap
+from cadpanel.geometry.end_curves import EndCurves, as_chains, seam_gap
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import dot
 from tests.closest import closest
@@ -225,3 +226,26 @@ def test_the_closest_point_of_a_straight_end_is_the_foot_or_an_end(seed, end):
     brute = np.linalg.norm(points[:, None] - fine, axis=-1)
     assert distance[0] == pytest.approx(brute.min(axis=1), abs=1e-3)
     assert u[0] == pytest.approx(brute.argmin(axis=1) / 20_000, abs=1e-4)
+
+
+@few
+@given(seed=seeds, chain=chains)
+def test_a_distance_to_some_place_near_is_at_least_that_of_the_closest_point_and_about_it_where_it_is_near(seed, chain):
+    """From any place at all it is no less; from near the closest point a step leads all but there."""
+    random = np.random.default_rng(seed)
+    curves = end_curve(random_panel(seed, chain=chain), 0)
+    u = random.uniform(0.05, 0.95, 60) + random.integers(0, curves.patches, 60)
+    foot, normals = (values[0] for values in curves.follow(u[None]))
+    points = foot + random.uniform(-20.0, 20.0, (60, 1)) * normals
+    origin = curves.corners[:, 0]
+    on, flat = as_chains(curves, origin), (points - origin).T
+    least, where = (values[0] for values in closest(curves, points[None]))
+    anywhere = random.integers(0, curves.patches, 60)
+    assert np.all(distances_near(on, anywhere, random.uniform(0.0, 1.0, 60), flat) >= least - ROUNDING)
+    piece = np.minimum(where.astype(np.intp), curves.patches - 1)
+    near = np.clip(where - piece + random.uniform(-0.01, 0.01, 60), 0.0, 1.0)
+    found = distances_near(on, piece, near, flat)
+    assert np.all(found >= least - ROUNDING)
+    assert found == pytest.approx(least, rel=1e-3, abs=1e-3)
+    exact = distances_near(on, piece, where - piece, flat)
+    assert exact == pytest.approx(least, abs=ROUNDING)

@@ -159,6 +159,27 @@ def test_a_start_beyond_the_bounds_is_brought_within_them():
     assert solution.unknowns == pytest.approx(np.array([[0.5, 0.25]]), abs=1e-8)
 
 
+def test_unknowns_on_their_bounds_are_within_them_and_just_beyond_they_are_not():
+    bounds = Bounds(np.array([[-1.0, -np.inf]]), np.array([[2.0, 3.0]]))
+    for within in ([[-1.0, 0.0]], [[2.0, 3.0]], [[0.0, -1e9]]):
+        assert bounds.hold(np.array(within))
+    for beyond in ([[np.nextafter(-1.0, -2.0), 0.0]], [[0.0, np.nextafter(3.0, 4.0)]]):
+        assert not bounds.hold(np.array(beyond))
+        assert bounds.hold(bounds.clip(np.array(beyond)))
+
+
+def test_unknowns_are_blocked_on_a_bound_beyond_which_the_cost_would_fall_and_nowhere_else():
+    """Where the cost does not change they are free to leave it, as between the bounds."""
+    lower, upper = np.full((1, 3), -1.0), np.full((1, 3), 2.0)
+    gradient = np.array([[1.0, 0.0, -1.0]])
+    for unknowns, blocked in (
+        (lower, [[True, False, False]]),
+        (upper, [[False, False, True]]),
+        (0.5 * lower, [[False] * 3]),
+    ):
+        assert Bounds(lower, upper).blocked(unknowns, gradient).tolist() == blocked
+
+
 def test_where_a_system_cannot_be_solved_it_is_damped_more_and_more(monkeypatch):
     """As where rounding leaves a matrix that is not positive definite: by 2, then 4, then 8 times."""
     dampings = []

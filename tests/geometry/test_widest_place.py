@@ -13,8 +13,6 @@ from tests.seams import KINDS
 SEAMS = 40
 # Of what is found, and mm or radians.
 GAP, KINK, ROUNDING = 1e-5, 2e-4, np.array([[1e-9], [1e-9]])
-# So many times as many places as it begins with are looked at, on average over all kinds.
-LOOKS = 1.63
 
 
 def pair(kind, seed=20, count=SEAMS) -> tuple[ConicChains, ConicChains]:
@@ -60,7 +58,11 @@ def test_the_widest_place_is_the_same_however_curves_are_cut_into_pieces(kind, p
     assert_same(widest(cut(first, parts), second), wanted)
 
 
-def test_few_places_are_looked_at_beyond_those_it_begins_with(monkeypatch):
+@pytest.mark.parametrize(
+    ("kinds", "count", "most"), [(list(KINDS), SEAMS, 1.62), (["strangers"], 400, 1.219), (["unlike"], 400, 1.372)]
+)
+def test_few_places_are_looked_at_beyond_those_it_begins_with(monkeypatch, kinds, count, most):
+    """So many times as many, on average; of curves far apart the closest point leaps, which is another matter."""
     looked = []
 
     def noted(on, of, points):
@@ -69,10 +71,10 @@ def test_few_places_are_looked_at_beyond_those_it_begins_with(monkeypatch):
 
     monkeypatch.setattr(widest_place, "closest_points", noted)
     shares = []
-    for kind in KINDS:
+    for kind in kinds:
         looked.clear()
-        first, second = pair(kind)
+        first, second = pair(kind, count=count)
         widest(first, second)
-        pieces = 2 * SEAMS * max(first.pieces, second.pieces)
+        pieces = 2 * count * max(first.pieces, second.pieces)
         shares.append(sum(looked) / (pieces * (INTERVALS + 1)))
-    assert np.mean(shares) <= LOOKS, shares
+    assert np.mean(shares) <= most, shares

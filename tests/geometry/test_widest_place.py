@@ -8,7 +8,7 @@ from cadpanel.geometry.closest_points import closest_points
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains
 from cadpanel.geometry.end_curves import as_chains
 from cadpanel.geometry.widest_place import INTERVALS, widest
-from tests.seams import KINDS
+from tests.seams import KINDS, backwards
 
 SEAMS = 40
 # Of what is found, and mm or radians.
@@ -58,6 +58,15 @@ def test_the_widest_place_is_the_same_however_curves_are_cut_into_pieces(kind, p
     assert_same(widest(cut(first, parts), second), wanted)
 
 
+@pytest.mark.parametrize("turn", [lambda curves: curves, backwards], ids=["onwards", "backwards"])
+def test_normals_are_compared_wherever_the_closest_point_leaps_from_whichever_end_it_is_seen(turn):
+    """Of six hundred strangers one has its largest angle just beyond a leap."""
+    first, second = (turn(of) for of in KINDS["strangers"](np.random.default_rng(21), 600))
+    origin = 0.5 * (first.corners[:, 0] + second.corners[:, 0])
+    one, other = as_chains(first, origin), as_chains(second, origin)
+    assert_same(widest(one, other), np.array(widest(cut(one, 3), cut(other, 3))))
+
+
 @pytest.mark.parametrize(
     ("kinds", "count", "most"), [(list(KINDS), SEAMS, 1.62), (["strangers"], 400, 1.219), (["unlike"], 400, 1.372)]
 )
@@ -78,3 +87,18 @@ def test_few_places_are_looked_at_beyond_those_it_begins_with(monkeypatch, kinds
         pieces = 2 * count * max(first.pieces, second.pieces)
         shares.append(sum(looked) / (pieces * (INTERVALS + 1)))
     assert np.mean(shares) <= most, shares
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_curves_that_are_the_same_are_seen_to_be_so_at_once(monkeypatch, kind):
+    """Where rounding is all that there is of a gap, nothing is looked for."""
+    looked = []
+
+    def noted(on, of, points):
+        looked.append(len(of))
+        return closest_points(on, of, points)
+
+    monkeypatch.setattr(widest_place, "closest_points", noted)
+    chains, _ = pair(kind)
+    widest(chains, chains)
+    assert sum(looked) == 2 * SEAMS * chains.pieces * (INTERVALS + 1)

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import CodeType, FrameType
 
 import pytest
+from hypothesis import Phase, settings
 
 Calls = dict[str, list[int]]  # by file, the first lines of the functions that were called
 
@@ -59,6 +60,11 @@ class Chosen:
     """Runs some of the tests alone, those first that take least: most changes fail one of these."""
 
     seconds: Mapping[str, float]
+
+    def pytest_sessionstart(self) -> None:
+        """A failure is enough: the smallest one would be looked for for minutes."""
+        settings.register_profile("found", phases=(Phase.explicit, Phase.generate))
+        settings.load_profile("found")
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:

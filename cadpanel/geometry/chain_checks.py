@@ -205,7 +205,7 @@ def _check_rulings(shape: Chain, where: str) -> None:
     cosines = np.einsum("rx,ex->er", shape.directions, shape.cut_normals)
     if cosines.min() < SMALLEST_CUT_COSINE:
         end, ruling = np.unravel_index(int(cosines.argmin()), cosines.shape)
-        angle = math.degrees(math.asin(float(np.clip(cosines[end, ruling], -1.0, 1.0))))
+        angle = math.degrees(math.asin(max(float(cosines[end, ruling]), -1.0)))
         raise PanelError(
             shape.name,
             f"ruling {int(ruling) + 1} runs at {angle:.4g} degrees to the cut plane at the {_ENDS[end]}{where}, nearly "

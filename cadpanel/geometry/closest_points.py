@@ -169,7 +169,5 @@ def _golden_section(curves: Array, middle: Array) -> tuple[Array, Array]:
         left, right = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
         falls = square(left) > square(right)
         low, high = np.where(falls, left, low), np.where(falls, high, right)
-    candidates = np.stack([low, 0.5 * (low + high), high])
-    squares = np.stack([square(w) for w in candidates])
-    best = squares.argmin(axis=0)[None]
-    return np.take_along_axis(candidates, best, axis=0)[0], np.take_along_axis(squares, best, axis=0)[0]
+    below, above = square(low), square(high)
+    return np.where(above < below, high, low), np.minimum(above, below)

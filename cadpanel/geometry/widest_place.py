@@ -190,7 +190,7 @@ def _on_side(on: Stations, column: IntArray, places: _Places, travel: Array) -> 
     first = places.column - places.column % on.chains.pieces
     piece = first + border.astype(np.intp) - (travel < 0.0)
     wrong = (np.abs(places.foot - border) < _MET) & (np.abs(travel) > _MET) & (piece != places.column)
-    wrong &= on.joins[first + border.astype(np.intp)] & (border > 0.0) & (border < on.chains.pieces)
+    wrong &= on.joins[first + border.astype(np.intp)]  # nothing joins at the ends of a chain
     if not wrong.any():
         return places
     turned = np.flatnonzero(wrong)

@@ -10,7 +10,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import CATALOGUE, for_corners, polygon
 from cadpanel.features.catalogue import feature as named
 from cadpanel.features.feature import MOST_PATCHES, Feature
-from cadpanel.features.numbers import Number
+from cadpanel.features.numbers import LARGEST, Number
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.features.polygon import MOST_CORNERS, Polygon
 from tests.chains import CHAINS, COMPOSED, FEATURES
@@ -318,6 +318,21 @@ def test_a_name_that_cannot_be_printed_is_refused(name):
 def test_numbers_that_no_panel_has_are_refused(patch, number):
     with pytest.raises(SettingsError, match=f"^'{number}' must lie between"):
         patch()
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_largest_number_is_one_and_what_is_larger_is_none(sign):
+    assert Number.of("shift", "length", sign * LARGEST).fixed == sign * LARGEST
+    with pytest.raises(SettingsError, match="must be a finite number"):
+        Number.of("shift", "length", sign * math.nextafter(LARGEST, math.inf))
+
+
+def test_a_number_may_lie_at_either_end_of_what_it_may_be_and_no_farther_out():
+    for value in (1.0, 3.0, (1.0, 3.0), (None, 3.0), None):
+        Number.of("shift", "length", value).require(1.0, 3.0, "so it is")
+    for beyond in (math.nextafter(1.0, 0.0), math.nextafter(3.0, 4.0)):
+        with pytest.raises(SettingsError, match="'shift' must lie between 1 and 3: so it is"):
+            Number.of("shift", "length", beyond).require(1.0, 3.0, "so it is")
 
 
 @pytest.mark.parametrize("radius", [10**400, 1e300, -1e12])

@@ -9,7 +9,7 @@ import pytest
 from cadpanel.errors import SettingsError
 from cadpanel.features import independence
 from cadpanel.features.feature import Feature
-from cadpanel.features.independence import LARGEST_FIXED, typical_values
+from cadpanel.features.independence import LARGEST_FIXED, TRIALS, typical_values
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from tests.own_patches import ByRoot, CurvedBy
 
@@ -87,6 +87,28 @@ def test_a_feature_is_independent_if_it_is_so_on_one_trial_however_large_its_num
     trials[:] = np.diag((1.0, 1e-12))
     with pytest.raises(SettingsError, match="depend on each other"):
         independence.refuse_dependent(feature)
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1e-3, 1e6])
+@pytest.mark.parametrize(("least", "passes"), [(1e-8, True), (1e-10, False)])
+def test_the_unit_of_what_can_be_seen_does_not_matter(monkeypatch, unit, least, passes):
+    monkeypatch.setattr(independence, "motions", lambda *_: unit * np.diag((1.0, least))[None])
+    monkeypatch.setattr(independence, "typical_values", lambda *_: None)
+    feature = SimpleNamespace(name="any", free=(0, 1), numbers=(SimpleNamespace(name="a"), SimpleNamespace(name="b")))
+    if passes:
+        independence.refuse_dependent(feature)
+    else:
+        with pytest.raises(SettingsError, match=r"depend on each other, so .*: b; fix"):
+            independence.refuse_dependent(feature)
+
+
+def test_no_two_trials_share_a_number_and_cuts_stand_on_both_sides():
+    of = Feature(Plane(), Cone(), Plane())
+    values = typical_values(of)
+    assert all(len(np.unique(values[:, free])) == TRIALS for free in of.free)
+    first, second = of.cut_numbers[:, 0]
+    assert (values[:, first] < -0.3).all()
+    assert (values[:, second] > 0.3).all()
 
 
 @pytest.mark.parametrize(

@@ -165,3 +165,17 @@ def test_numbers_in_another_unit_of_length_tell_of_the_same_patch(patch):
     here = patch.dimensions(numbers[None]).values[0]
     assert told[0] == pytest.approx(here[0] / 2.5)
     assert told[1:] == pytest.approx(here[1:])
+
+
+class Blind(AngleFirst):
+    """A patch that passes, but that its dimensions forget the sign of a half angle."""
+
+    def dimensions(self, values):
+        found = AngleFirst.dimensions(self, values)
+        return Dimensions(np.abs(found.values), found.rates)
+
+
+def test_a_patch_that_forgets_the_sign_of_an_angle_is_refused():
+    check_patch(AngleFirst())
+    with pytest.raises(SettingsError, match=r"has '(numbers_for|dimensions)' that"):
+        check_patch(Blind())

@@ -66,6 +66,24 @@ def test_parallel_segments_and_the_overhang_of_a_longer_one():
     assert hausdorff_distances([one], [pieces([segment((0, 0, 0), (14, 0, 0))])])[0] == pytest.approx(4.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("away", [0.0, 2.0**20, -(2.0**30)])
+def test_where_two_chains_stand_costs_their_distance_no_digits(away):
+    """They are seen from between them."""
+    corners = np.array([(0, 0, 0), (7, 1, 0), (10, 5, 2)]) + away
+    chains = [pieces([segment(*(corners[i : i + 2] + shift)) for i in range(2)]) for shift in (0.0, [0.0, 0.0, 0.25])]
+    arcs = [pieces([circle(100.0, 0.5, 2.0, np.array(center) + away)]) for center in ((0, 0, 0), (0, 0, 0.25))]
+    assert hausdorff_distances([chains[0], arcs[0]], [chains[1], arcs[1]])[1] == pytest.approx(0.25, abs=1e-9)
+    found = hausdorff_distances([chains[0]], [chains[1]])[0]
+    assert found == pytest.approx(
+        hausdorff_distances([moved_to(chains[0], -away)], [moved_to(chains[1], -away)])[0], abs=1e-9
+    )
+    assert 0.1 < found <= 0.25
+
+
+def moved_to(of, by):
+    return replace(of, centers=of.centers + by)
+
+
 def test_concentric_arcs_are_apart_by_their_radii():
     gap = hausdorff_distances([pieces([circle(100.0, 0.5, 2.0)])], [pieces([circle(101.0, 0.5, 2.0)])])
     assert gap[0] == pytest.approx(1.0, abs=1e-9)

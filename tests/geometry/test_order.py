@@ -69,6 +69,13 @@ def test_axes_of_a_box_follow_its_sides_in_their_order():
     assert principal_axes(corners) == pytest.approx(np.eye(3)[::-1], abs=1e-12)
 
 
+@pytest.mark.parametrize("shift", [(5.0, -3.0, 8.0), (-100.0, 0.0, 20.0)])
+def test_axes_are_the_same_wherever_the_points_stand_and_in_whatever_unit(shift):
+    points = np.random.default_rng(2).normal(size=(20, 3)) * np.array([1.0, 2.0, 3.0])
+    assert principal_axes(points + np.array(shift)) == pytest.approx(principal_axes(points), abs=1e-9)
+    assert principal_axes(1e6 * points) == pytest.approx(principal_axes(points), abs=1e-9)
+
+
 @pytest.mark.parametrize("count", [1, 2])
 def test_one_point_or_two_have_axes_too(count):
     assert_alike([principal_axes(points) for points in drawn(np.eye(3)[:count])])

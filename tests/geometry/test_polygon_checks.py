@@ -113,6 +113,13 @@ def test_a_corner_off_the_plane_is_refused(off, fine):
         refused(shape, "off their plane")
 
 
+def test_corners_just_as_far_off_their_plane_as_may_be_pass():
+    off = FLATNESS
+    passes(flat((0.0, 0.0, off), (1000.0, 0.0, -off), (1000.0, 1000.0, off), (0.0, 1000.0, -off)))
+    off = math.nextafter(FLATNESS, 1.0)
+    refused(flat((0.0, 0.0, off), (1000.0, 0.0, -off), (1000.0, 1000.0, off), (0.0, 1000.0, -off)), "off their plane")
+
+
 @pytest.mark.parametrize(
     ("length", "fine"),
     [(1.01 * SMALLEST_LENGTH, True), (0.99 * SMALLEST_LENGTH, False), (0.0, False)],
@@ -123,6 +130,30 @@ def test_an_edge_too_short_is_refused_by_its_number(length, fine):
         passes(shape)
     else:
         refused(shape, "edge 2 is only .* merge its two corners")
+
+
+@pytest.mark.parametrize("size", [1.5 * SMALLEST_LENGTH, 0.3, 1.0, 1e6])
+def test_a_square_of_any_size_passes_as_long_as_its_edges_are_long_enough(size):
+    """And one whose edges keep away from each other by less than a millimetre."""
+    passes(square(size))
+    passes(flat((0.0, 0.0), (size, 0.0), (size, size), (0.0, size), (0.8 * size, 0.5 * size)))
+
+
+@given(seeds, counts)
+def test_its_plane_and_first_edge_are_its_ruling(seed, count):
+    shape = random_polygon(seed, count)
+    point, direction, normal = shape.rulings()
+    edge = shape.outline[1] - shape.outline[0]
+    assert point == pytest.approx(shape.outline[:1])
+    assert np.linalg.norm(edge) * direction[0] == pytest.approx(edge, abs=1e-9)
+    assert normal == pytest.approx(shape.normal[None])
+
+
+@pytest.mark.parametrize("away", [0.0, 2.0**23, 2.0**30])
+def test_where_a_polygon_stands_costs_its_area_no_digits(away):
+    """From its first corner, the numbers are as small as the panel."""
+    shape = flat((0.0, 0.0), (0.5, 0.0), (0.5, 0.25), (0.0, 0.25))
+    assert polygon_area(replace(shape, outline=shape.outline + away)) == 0.125
 
 
 def test_an_edge_of_just_the_smallest_length_passes():
@@ -155,9 +186,19 @@ def test_a_corner_of_four_that_is_pulled_through_the_edge_before_it_is_refused()
     passes(flat((0.0, 0.0), (1000.0, 0.0), (700.0, 900.0), (300.0, 50.0)))
 
 
+def test_corners_in_one_line_are_refused():
+    refused(flat((0.0, 0.0), (1000.0, 0.0), (2000.0, 0.0)), "crosses itself or is turned inside out")
+
+
 def test_a_bow_tie_is_refused_although_its_edges_are_long():
     refused(flat((0.0, 0.0), (1000.0, 0.0), (0.0, 600.0), (1000.0, 1000.0)), "crosses itself or is turned inside out")
     refused(flat((0.0, 0.0), (1000.0, 1000.0), (1000.0, 0.0), (0.0, 600.0)), "crosses itself or is turned inside out")
+
+
+@pytest.mark.parametrize("thickness", [True, "3", None, 3j])
+def test_a_thickness_that_is_no_number_is_refused(thickness):
+    with pytest.raises(PanelError, match=r"the sheet thickness is .* give a number"):
+        check_buildable(square(), thickness)
 
 
 @pytest.mark.parametrize("thickness", [THINNEST_SHEET, THICKEST_SHEET])

@@ -42,6 +42,15 @@ def test_distance_off_a_helix_is_what_it_was_moved_by_on_either_side(radius, tur
     np.testing.assert_allclose(found[0], off * radius, atol=1e-6 * radius)
 
 
+@pytest.mark.parametrize("turned", [8.0, 14.0])
+def test_a_curve_that_turns_less_than_sharply_from_point_to_point_is_no_polyline(turned):
+    """However far it turns over several points: chords would be off by the sagitta, 0.2 to 0.7 % of the radius."""
+    count = 9
+    curve = helix(np.linspace(0.0, 1.0, count), 1.0, np.radians(turned) * (count - 1), 0.0)
+    between = helix(np.linspace(0.0, 1.0, 2 * count - 1)[1::2], 1.0, np.radians(turned) * (count - 1), 0.0)
+    np.testing.assert_allclose(distances_to_curves(between[None], curve[None])[0], 0.0, atol=5e-4)
+
+
 def test_distance_beyond_an_end_is_to_the_end():
     line = np.linspace([0.0, 0.0, 0.0], [100.0, 0.0, 0.0], 9)
     assert distances_to_curves(np.array([[[103.0, 4.0, 0.0], [-3.0, 4.0, 0.0]]]), line[None])[0] == pytest.approx(5.0)
@@ -110,13 +119,46 @@ def test_the_tangent_at_an_end_is_that_of_the_parabola_by_length_of_chord(seed, 
     steps = np.linalg.norm([near, far], axis=1)
     # p(s) = a s + b s^2 with p(|near|) = near and p(|far|) = far.
     a, _ = np.linalg.solve([[steps[0], steps[0] ** 2], [steps[1], steps[1] ** 2]], np.array([near, far]))
-    found = end_tangents(np.array([np.zeros(3), near, far]))
+    start = np.random.default_rng(seed + 1).normal(size=3)
+    found = end_tangents(start + np.array([np.zeros(3), near, far]))
     np.testing.assert_allclose(found, a / np.linalg.norm(a), atol=1e-9)
 
 
 def test_several_polylines_have_each_its_own_lengths():
     random = np.random.default_rng(1)
-    for counts in ((4, 4, 4), (4, 6, 5)):
+    for counts in ((4, 4, 4), (4, 6, 5), (4, 6, 4)):
         lines = [random.normal(size=(count, 3)) for count in counts]
         for found, line in zip(arc_lengths(lines), lines, strict=True):
             np.testing.assert_allclose(found, arc_length(line))
+
+
+@given(seed=st.integers(0, 2**32 - 1), counts=st.lists(st.integers(4, 9), min_size=1, max_size=3))
+def test_points_keep_their_values_and_what_lies_between_the_first_ones_hangs_on_the_first_four(seed, counts):
+    """Whatever the values are; the same at the other end."""
+    random = np.random.default_rng(seed)
+    lengths = [np.cumsum(random.uniform(0.2, 1.0, count)) for count in counts]
+    values = [random.normal(size=(count, 2)) for count in counts]
+    np.testing.assert_allclose(interpolate(lengths, np.concatenate(values), lengths), np.concatenate(values), atol=1e-9)
+    for part, place in ((slice(None, 4), 0), (slice(-4, None), -2)):
+        own = [length[part] for length in lengths]
+        at = [0.5 * (length[place] + length[place + 1]) for length in lengths]
+        some = np.concatenate([value[part] for value in values])
+        found = interpolate(lengths, np.concatenate(values), [np.array([where]) for where in at])
+        np.testing.assert_allclose(found, interpolate(own, some, [np.array([where]) for where in at]), atol=1e-9)
+
+
+@pytest.mark.parametrize("size", [1e-3, 0.3, 1.0, 1e5])
+def test_distances_grow_with_the_unit_of_length(size):
+    random = np.random.default_rng(4)
+    line, points = np.cumsum(random.uniform(0.1, 1.0, (3, 9, 3)), axis=1), random.uniform(0.0, 5.0, (3, 7, 3))
+    for distances in (distances_to_polylines, distances_to_curves):
+        np.testing.assert_allclose(distances(size * points, size * line), size * distances(points, line), rtol=1e-9)
+
+
+@pytest.mark.parametrize("off", [0.3, 0.6])
+def test_feet_are_found_from_points_far_inside_a_bend(off):
+    """Where the foot on the chord is a good place to begin: there the steps towards the foot get shorter slowly."""
+    parts, inside = np.linspace(0.0, 1.0, 65), np.linspace(0.02, 0.98, 97)
+    curve, foot = helix(parts, 1.0, 2.0, 0.0), helix(inside, 1.0, 2.0, 0.0)
+    found = distances_to_curves(((1.0 - off) * foot)[None], curve[None])
+    np.testing.assert_allclose(found[0], off, rtol=0.0, atol=6e-7)

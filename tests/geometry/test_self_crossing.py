@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.patches import ConePatch, PlanePatch
 from cadpanel.geometry.self_crossing import crosses_itself, end_polyline
+from cadpanel.geometry.shape import PanelShape
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 
@@ -48,3 +49,34 @@ def test_the_polyline_runs_through_all_corners_in_the_plane_of_its_end(seed, cha
 def test_where_a_panel_stands_does_not_matter(part):
     shape = folded(np.radians(240.0), part * 100.0 * np.tan(np.radians(60.0)))
     assert crosses_itself(moved(shape, (1e4, -2e4, 3e3))) == crosses_itself(shape) == (part > 1.0)
+
+
+def strip(*corners):
+    """Planes along x whose ends run through corners (y, z)."""
+    points = np.array([(0.0, *corner) for corner in corners])
+    upwards, along = np.tile([0.0, 0.0, 1.0], (len(points), 1)), np.tile([1.0, 0.0, 0.0], (len(points), 1))
+    return PanelShape(
+        name="A-01",
+        feature="by hand",
+        points=points,
+        directions=along,
+        normals=upwards,
+        patches=(PlanePatch(),) * (len(points) - 1),
+        cut_points=np.array([[-500.0, 0.0, 0.0], [500.0, 0.0, 0.0]]),
+        cut_normals=along[:2],
+    )
+
+
+@pytest.mark.parametrize("size", [0.3, 1.0, 100.0])
+@pytest.mark.parametrize(("end", "crosses"), [(0.5, False), (0.1, False), (0.0, True), (-0.5, True)])
+def test_an_end_that_touches_itself_runs_into_itself(size, end, crosses):
+    """Its last corner on the first flange, and on the flange next but one, is the smallest case."""
+    far = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, end)]
+    near = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, end)]
+    for corners in (far, near):
+        assert crosses_itself(strip(*(size * np.array(corners)))) == crosses
+
+
+def test_an_end_that_goes_back_over_itself_square_to_its_way_runs_into_itself():
+    assert crosses_itself(strip((0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (1.0, -1.0), (2.0, 0.0)))
+    assert not crosses_itself(strip((0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (1.5, -1.0), (2.0, 0.0)))

@@ -124,8 +124,9 @@ def _try(mutant: Mutant, copy: Path, coverage: Coverage, timeout: float) -> Outc
             tests -= done
             done |= tests
             if tests:
-                seconds = timeout or PATIENCE * sum(coverage.seconds[test] for test in tests) + START_UP
-                outcome = run_tests(copy, coverage.files_of(tests), [Chosen(tests)], seconds)
+                took = {test: coverage.seconds[test] for test in tests}
+                seconds = timeout or PATIENCE * sum(took.values()) + START_UP
+                outcome = run_tests(copy, coverage.files_of(tests), [Chosen(took)], seconds)
                 if outcome != "survived":
                     return outcome
         return "survived"

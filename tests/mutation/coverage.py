@@ -10,6 +10,7 @@ from pathlib import Path
 from types import CodeType, FrameType
 
 import pytest
+from hypothesis import Phase, settings
 
 Calls = dict[str, list[int]]  # by file, the first lines of the functions that were called
 
@@ -56,12 +57,19 @@ class Recorder:
 
 @dataclass(eq=False)
 class Chosen:
-    """Runs some of the tests alone."""
+    """Runs some of the tests alone, those first that take least: most changes fail one of these."""
 
-    tests: Collection[str]
+    seconds: Mapping[str, float]
 
+    def pytest_sessionstart(self) -> None:
+        """A failure is enough: the smallest one would be looked for for minutes."""
+        settings.register_profile("found", phases=(Phase.explicit, Phase.generate))
+        settings.load_profile("found")
+
+    @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        items[:] = [item for item in items if item.nodeid in self.tests]
+        chosen = [item for item in items if item.nodeid in self.seconds]
+        items[:] = sorted(chosen, key=lambda item: self.seconds[item.nodeid])
 
 
 @dataclass(frozen=True)
@@ -90,11 +98,8 @@ class Coverage:
         return {test for test in self.calls if _file_of(test) in files}
 
     def files_of(self, tests: Collection[str]) -> list[str]:
-        """The files in which tests stand, those first whose tests take least."""
-        took: dict[str, float] = {}
-        for test in tests:
-            took[_file_of(test)] = took.get(_file_of(test), 0.0) + self.seconds[test]
-        return sorted(took, key=lambda file: (took[file], file))
+        """The files in which tests stand."""
+        return sorted(set(map(_file_of, tests)))
 
 
 def _file_of(test: str) -> str:

@@ -87,7 +87,7 @@ Change = tuple[int, int, str, str]
 def _changes(tree: ast.Module, text: str) -> Iterator[Change]:
     """Line, column in bytes, old and new text of each change."""
     source = _Source(text)
-    for node in _without_annotations(tree):
+    for node in _arithmetic(tree):
         if isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC and not _is_text(node):
             yield from source.swap(node.left, node.right, ARITHMETIC[type(node.op)])
         elif isinstance(node, ast.AugAssign) and type(node.op) in ARITHMETIC:
@@ -124,13 +124,14 @@ def _is_text(node: ast.expr) -> bool:
     return isinstance(node, ast.JoinedStr) or (isinstance(node, ast.Constant) and isinstance(node.value, str | bytes))
 
 
-def _without_annotations(node: ast.AST) -> Iterator[ast.AST]:
+def _arithmetic(node: ast.AST) -> Iterator[ast.AST]:
+    """All nodes but types, and which axis of an array is meant: counted from its end it is mostly the same one."""
     yield node
     for field, value in ast.iter_fields(node):
         if field not in ("annotation", "returns"):
             for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST):
-                    yield from _without_annotations(child)
+                if isinstance(child, ast.AST) and not (isinstance(child, ast.keyword) and child.arg == "axis"):
+                    yield from _arithmetic(child)
 
 
 class _Source:

@@ -227,3 +227,11 @@ def test_what_just_reaches_its_distance_is_held():
     touching: Any = Touching()
     how = Schedule(balance=1, close=5, stationarity=0.0)
     assert hold_tolerances(model, [touching], model.free_cost, targets.copy(), how).rounds == 2
+
+
+def test_a_cost_that_has_come_to_nothing_is_at_rest():
+    """There is no share of it by which it could change."""
+    targets = np.array([[1.0, 0.0]])
+    model = HeldPoints(targets, np.zeros((1, 2)), np.array([9.0]))
+    found = hold_tolerances(model, [model], lambda _: 0.0, targets, Schedule(balance=20, close=5, stationarity=1e-6))
+    assert (found.rounds, found.stopped) == (2, Stop.HELD)

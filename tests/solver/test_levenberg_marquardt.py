@@ -1,5 +1,7 @@
 """Classic problems of least squares, alone and side by side."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -138,6 +140,109 @@ def test_a_trial_that_makes_no_sense_is_refused():
     assert solution.unknowns == pytest.approx(np.ones((1, 1)), abs=1e-7)
 
 
+@pytest.mark.parametrize("other", [2.0, 0.3, 1.0])
+def test_a_trial_that_makes_no_sense_is_refused_beside_one_that_is_good(other):
+    class Logarithm(Separate):
+        def cost(self, unknowns):
+            with np.errstate(invalid="ignore"):
+                return 0.5 * np.log(unknowns[:, 0]) ** 2
+
+    starts = np.array([[10.0], [other]])
+    model = Logarithm(lambda u: np.log(u), lambda u: np.diag(1.0 / u), pattern(2, 1, []), np.ones(2))
+    solution = levenberg_marquardt(model, starts, TIGHT)
+    assert solution.unknowns == pytest.approx(np.ones((2, 1)), abs=1e-7)
+    assert solution.converged.all()
+
+
+def test_only_steps_that_gain_nothing_count_as_failed(monkeypatch):
+    """Of one that gains a little less damping is not taken back."""
+    told = []
+    damp = method._damp
+
+    def noted(mu, growth, gain, failed):
+        told.append((gain, failed))
+        return damp(mu, growth, gain, failed)
+
+    monkeypatch.setattr(method, "_damp", noted)
+    for start in np.random.default_rng(1).uniform(-3.0, 3.0, (30, 1, 2)):
+        levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
+    gains, failed = np.array(told)[:, :, 0].T
+    assert np.array_equal(gains <= 0.0, failed)
+    assert ((gains > 0.0) & (gains < 0.25)).any()
+    assert (gains <= 0.0).any()
+
+
+@pytest.mark.parametrize("reach", [0.1, 0.3, 1e9, None])
+@pytest.mark.parametrize("damping", [1e-6, 1e-3, 10.0])
+def test_of_a_linear_problem_every_step_gains_what_it_promises(monkeypatch, reach, damping):
+    """Cut at bounds, within bounds that nothing touches, and without any."""
+    gains = []
+    damp = method._damp
+
+    def noted(mu, growth, gain, failed):
+        gains.append(float(gain[0]))
+        return damp(mu, growth, gain, failed)
+
+    monkeypatch.setattr(method, "_damp", noted)
+    chain: Any = LinearChain(np.random.default_rng(8), blocks=4, size=3)
+    wide = np.full((4, 3), reach or 0.0)
+    chain.bounds = Bounds(-wide, wide) if reach else None
+    levenberg_marquardt(chain, np.zeros((4, 3)), Stopping(cost=1e-6, iterations=300), damping)
+    # A step that a bound cuts may lead uphill, which is told by a gain of 0.
+    assert np.array([gain for gain in gains if gain > 0.0]) == pytest.approx(1.0, rel=1e-4)
+    assert max(gains) > 0.0
+
+
+def test_bounds_that_nothing_touches_change_nothing():
+    starts = np.random.default_rng(2).uniform(-3.0, 3.0, (8, 2))
+    model = side_by_side(rosenbrock, rosenbrock_jacobian, starts)
+    free = levenberg_marquardt(model, starts, TIGHT)
+    model.bounds = Bounds(np.full((8, 2), -1e6), np.full((8, 2), 1e6))
+    bound = levenberg_marquardt(model, starts, TIGHT)
+    assert bound.iterations == free.iterations
+    assert np.array_equal(bound.unknowns, free.unknowns)
+
+
+@pytest.mark.parametrize("gain", [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0, 1.2, 50.0])
+def test_damping_follows_the_gain_as_nielsen_has_it(gain):
+    """Hans Bruun Nielsen, Damping parameter in Marquardt's method, 1999, equation 2.5: never below a third."""
+    mu, growth = method._damp(np.array([0.1]), np.array([16.0]), np.array([gain]), np.array([False]))
+    assert mu == pytest.approx(0.1 * max(1.0 / 3.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), rel=1e-12)
+    assert growth == 2.0
+
+
+@pytest.mark.parametrize("gain", [0.0, -0.3, -1e9])
+def test_damping_grows_ever_faster_where_steps_fail(gain):
+    mu, growth = np.array([0.1]), np.array([2.0])
+    for wanted in (0.2, 0.8, 6.4):
+        mu, growth = method._damp(mu, growth, np.array([gain]), np.array([True]))
+        assert mu == pytest.approx(wanted)
+
+
+def test_what_never_gets_better_comes_to_an_end():
+    """A derivative of the wrong sign leads uphill, however short the step."""
+    start = np.array([[3.0]])
+    model = side_by_side(lambda u: u, lambda _: -np.eye(1), start)
+    solution = levenberg_marquardt(model, start, Stopping(cost=1e-14, iterations=1000))
+    assert solution.converged.all()
+    assert solution.iterations < 100
+    assert np.array_equal(solution.unknowns, start)
+
+
+@pytest.mark.parametrize("unit", [1e-8, 1e-3, 1e5])
+def test_the_unit_of_the_residuals_does_not_matter_within_bounds_either(unit):
+    starts = np.array([[-1.2, 1.0], [0.3, 2.0]])
+
+    def solved(scale):
+        model = side_by_side(rosenbrock, rosenbrock_jacobian, starts, np.full(2, scale))
+        model.bounds = Bounds(np.array([[-2.0, -0.5]] * 2), np.array([[0.7, 2.0], [1.5, 1.8]]))
+        return levenberg_marquardt(model, starts, TIGHT)
+
+    plain, scaled = solved(1.0), solved(unit)
+    assert scaled.iterations == plain.iterations
+    assert scaled.unknowns == pytest.approx(plain.unknowns, rel=1e-9)
+
+
 @few
 @given(seed=st.integers(0, 2**32 - 1))
 def test_bounds_are_kept_and_end_where_a_bounded_linear_solver_ends(seed):
@@ -157,6 +262,27 @@ def test_a_start_beyond_the_bounds_is_brought_within_them():
     model.bounds = Bounds(np.array([[0.0, -np.inf]]), np.array([[0.5, np.inf]]))
     solution = levenberg_marquardt(model, start, TIGHT)
     assert solution.unknowns == pytest.approx(np.array([[0.5, 0.25]]), abs=1e-8)
+
+
+def test_unknowns_on_their_bounds_are_within_them_and_just_beyond_they_are_not():
+    bounds = Bounds(np.array([[-1.0, -np.inf]]), np.array([[2.0, 3.0]]))
+    for within in ([[-1.0, 0.0]], [[2.0, 3.0]], [[0.0, -1e9]]):
+        assert bounds.hold(np.array(within))
+    for beyond in ([[np.nextafter(-1.0, -2.0), 0.0]], [[0.0, np.nextafter(3.0, 4.0)]]):
+        assert not bounds.hold(np.array(beyond))
+        assert bounds.hold(bounds.clip(np.array(beyond)))
+
+
+def test_unknowns_are_blocked_on_a_bound_beyond_which_the_cost_would_fall_and_nowhere_else():
+    """Where the cost does not change they are free to leave it, as between the bounds."""
+    lower, upper = np.full((1, 3), -1.0), np.full((1, 3), 2.0)
+    gradient = np.array([[1.0, 0.0, -1.0]])
+    for unknowns, blocked in (
+        (lower, [[True, False, False]]),
+        (upper, [[False, False, True]]),
+        (0.5 * lower, [[False] * 3]),
+    ):
+        assert Bounds(lower, upper).blocked(unknowns, gradient).tolist() == blocked
 
 
 def test_where_a_system_cannot_be_solved_it_is_damped_more_and_more(monkeypatch):

@@ -74,6 +74,16 @@ def test_flat_panels_have_neither_radii_nor_flanges(name: str) -> None:
         assert limit.held(problem, FitSettings().allowed, 0.0) == []
 
 
+@pytest.mark.parametrize("limit", [MinRadius(), FlangeWidth()], ids=lambda limit: limit.name)
+def test_least_lengths_are_held_in_the_units_of_the_solver(limit: Limit) -> None:
+    """What may be lacking is a tenth of them."""
+    problem = made_problem(FEATURES["plane-cone-plane"], 2)
+    assert problem.place.length != 1.0
+    (term,) = limit.held(problem, {limit.name: 40.0}, 0.0)
+    assert isinstance(term, LackTerm)
+    assert problem.place.length * term.hold.radius == pytest.approx(np.full(term.hold.radius.shape, 4.0), rel=1e-12)
+
+
 @every_limit
 def test_the_names_of_a_limit_are_its_own_and_its_default_is_in_its_range(limit: Limit) -> None:
     others = [other for other in LIMITS if other is not limit]

@@ -1,5 +1,8 @@
-"""What all tests share: Hypothesis draws the same examples on every run, so that a failure can be run again."""
+"""What all tests share: examples that can be drawn again, and an order in which two workers end together."""
 
+from pathlib import Path
+
+import pytest
 from hypothesis import HealthCheck, settings
 
 settings.register_profile(
@@ -9,4 +12,30 @@ settings.register_profile(
     print_blob=True,
     suppress_health_check=[HealthCheck.too_slow],
 )
+# Hypothesis draws the same examples on every run, so that a failure can be run again.
 settings.load_profile("repeatable")
+
+TESTS = Path(__file__).parent
+FIRST = (
+    "brep/files/test_fuzz.py",
+    "test_examples.py",
+    "test_fixtures.py",
+    "test_architecture.py",
+    "test_api.py",
+    "cli/test_stopping.py",
+    "cli/test_portability.py",
+    "cli/test_fit.py",
+    "fitting/test_automatic.py",
+    "fitting/test_every_feature.py",
+    "terms/test_adding_a_limit.py",
+    "mutation/test_mutation.py",
+)
+"""Files with tests of several seconds. Workers of pytest-xdist take tests in their order, and end together only if the
+last ones are short: with the examples near the end one worker had nothing to do for the last fifth of the time."""
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the long tests first."""
+    first = {TESTS / file for file in FIRST}
+    items.sort(key=lambda item: item.path not in first)

@@ -183,7 +183,6 @@ BESIDE = {"freecad", "benchmarks", "mutation"}
 WITHOUT_LOGIC = {
     "cadpanel.brep.kernel.types": "three other names for the kernel's types",
     "cadpanel.brep.files.format": "what a file format is asked for, abstract",
-    "cadpanel.brep.isolation.interpreter": "the path of an interpreter",
     "cadpanel.cli.features": "prints the catalogue",
 }
 THROUGH_A_DOOR = {

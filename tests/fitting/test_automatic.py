@@ -1,5 +1,9 @@
 """`auto`: each panel gets the cheapest feature that will do, and another one where it will not."""
 
+from copy import deepcopy
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -24,9 +28,20 @@ KINDS = [
 CLOSE = FitSettings(feature="auto", max_deviation=0.01, method="local")
 
 
+@cache
 def known():
     shapes = [random_shapes(feature(kind), 2, 1)[0] for kind in KINDS]
     return alone(random_polygon(3, 5), *shapes)
+
+
+@cache
+def tried(most):
+    return Choice(known(), replace(CLOSE, max_deviation=most))
+
+
+def choice_within(most):
+    """The choice among the known panels, to be changed by whoever asks; the panels are fitted once only."""
+    return deepcopy(tried(most))
 
 
 def names(choice):
@@ -35,24 +50,21 @@ def names(choice):
 
 def test_panels_of_every_kind_get_their_own_feature():
     reference = known()
-    assert names(Choice(reference, CLOSE)) == ["planar-polygon", *KINDS]
+    assert names(choice_within(0.01)) == ["planar-polygon", *KINDS]
     result = fit(reference, CLOSE)
     assert [shape.feature for shape in result.shapes] == ["planar-polygon", *KINDS]
     assert result.measures.max_deviation.max() <= 0.01
 
 
 def test_a_wider_limit_gives_cheaper_features():
-    reference = known()
-    chosen = [
-        Choice(reference, FitSettings(feature="auto", max_deviation=most)).chosen for most in (0.01, 20.0, 5000.0)
-    ]
+    chosen = [choice_within(most).chosen for most in (0.01, 20.0, 5000.0)]
     assert np.all(np.diff(chosen, axis=0) <= 0)
     assert np.any(np.diff(chosen, axis=0) < 0, axis=1).all()
     assert not chosen[-1].any()
 
 
 def test_a_feature_that_is_taken_away_is_replaced_by_the_next_that_will_do():
-    choice = Choice(known(), CLOSE)
+    choice = choice_within(0.01)
     folded = 1 + KINDS.index("plane-cone-plane")
     assert choice.forbid(np.array([folded]))
     # A tri-cone can follow a cone between two flanges only nearly; three patches of the right kind can exactly.
@@ -63,7 +75,7 @@ def test_a_feature_that_is_taken_away_is_replaced_by_the_next_that_will_do():
 
 
 def test_when_all_are_taken_away_it_says_so():
-    choice = Choice(known(), CLOSE)
+    choice = choice_within(0.01)
     assert not all(choice.forbid(np.array([0])) for _ in CHEAPEST_FIRST)
 
 
@@ -79,7 +91,7 @@ def test_panels_that_cannot_be_built_among_their_neighbours_get_another_feature(
 
 @pytest.mark.parametrize("most", [0.01, 50.0])
 def test_promoting_gives_the_next_closer_feature(most):
-    choice = Choice(known(), FitSettings(feature="auto", max_deviation=most))
+    choice = choice_within(most)
     before = choice.chosen.copy()
     choice.promote(np.arange(len(before)))
     rows = np.arange(len(before))

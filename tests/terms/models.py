@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -108,6 +108,19 @@ class Case:
 
     problem: Problem
     unknowns: Array
+    _around: list[tuple[State, State]] = field(default_factory=list, init=False)
+
+    def around(self) -> list[tuple[State, State]]:
+        """For each unknown the states a step ahead and a step behind, walked once for all terms."""
+        if not self._around:
+            for j in range(self.unknowns.size):
+                step = np.zeros(self.unknowns.size)
+                step[j] = STEP
+                shaped = step.reshape(self.unknowns.shape)
+                self._around.append(
+                    (self.problem.state(self.unknowns + shaped), self.problem.state(self.unknowns - shaped))
+                )
+        return self._around
 
 
 def case_of(name: str, seed: int, *, panels: int = 4, ring: bool = False) -> Case:
@@ -180,13 +193,8 @@ def jacobian_fault(made: Together, case: Case) -> float:
     residual, exact = dense(made.rows(problem.state(unknowns, derivatives=True)), problem)
     assert np.abs(residual - made.residual(problem.state(unknowns))).max(initial=0.0) <= ROUNDING * largest(residual)
     numeric = np.empty_like(exact)
-    for j in range(exact.shape[1]):
-        step = np.zeros(exact.shape[1])
-        step[j] = STEP
-        ahead, behind = (
-            made.residual(problem.state(unknowns + sign * step.reshape(unknowns.shape))) for sign in (1.0, -1.0)
-        )
-        numeric[:, j] = (ahead - behind) / (2.0 * STEP)
+    for j, (ahead, behind) in enumerate(case.around()):
+        numeric[:, j] = (made.residual(ahead) - made.residual(behind)) / (2.0 * STEP)
     return float(np.abs(exact - numeric).max(initial=0.0)) / largest(exact)
 
 

@@ -167,7 +167,8 @@ class Search:
             step = _newton(away, along_u, along_v)
             # A parameter on the border that wants to go beyond it stays there, and the other one moves alone.
             blocked = np.asarray(((at <= low) & (step < 0.0)) | ((at >= high) & (step > 0.0)))
-            step = np.where(np.any(blocked, axis=1)[:, None], _alone(away, along_u, along_v, blocked), step)
+            if blocked.any():
+                step = np.where(np.any(blocked, axis=1)[:, None], _alone(away, along_u, along_v, blocked), step)
             new = np.clip(at + parts[going, None] * step, low, high)
             found = np.stack(evaluate(patch.surface, new), axis=1)
             # Where the surface bends much on the way, a whole step may lead away.

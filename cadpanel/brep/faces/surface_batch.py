@@ -1,7 +1,7 @@
 """Points and first derivatives on the surfaces of many faces at once.
 
 B-spline and Bezier surfaces, which is what references are made of, give their poles once and are evaluated together in
-NumPy; the kernel evaluates all others point by point.
+NumPy; planes are, too, and the kernel evaluates all others point by point.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import cast
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.Geom import Geom_BSplineSurface, Geom_Surface
-from OCP.GeomAbs import GeomAbs_BezierSurface, GeomAbs_BSplineSurface
+from OCP.GeomAbs import GeomAbs_BezierSurface, GeomAbs_BSplineSurface, GeomAbs_Plane
 from OCP.GeomConvert import GeomConvert
-from OCP.gp import gp_Pnt, gp_Vec
+from OCP.gp import gp_Pln, gp_Pnt, gp_Vec
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.kernel.splines import numbers
@@ -93,7 +93,12 @@ class SurfaceBatch:
 
 
 def kernel_values(surface: BRepAdaptor_Surface, parameters: Array) -> Array:
-    """(p, 3, 3) the point and the derivatives by u and by v, mm, at (p, 2) parameters, one after the other."""
+    """(p, 3, 3) the point and the derivatives by u and by v, mm, at (p, 2) parameters.
+
+    On a plane they are known; on any other surface the kernel is asked for one after the other.
+    """
+    if surface.GetType() == GeomAbs_Plane:
+        return _plane_values(surface.Plane(), parameters)
     point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
     values: list[float] = []
     for u, v in parameters.tolist():
@@ -102,6 +107,15 @@ def kernel_values(surface: BRepAdaptor_Surface, parameters: Array) -> Array:
         values += along_u.Coord()
         values += along_v.Coord()
     return np.array(values, dtype=np.float64).reshape(-1, 3, 3)
+
+
+def _plane_values(plane: gp_Pln, parameters: Array) -> Array:
+    """The same on a plane."""
+    along_u, along_v = plane.XAxis().Direction().Coord(), plane.YAxis().Direction().Coord()
+    values = np.empty((len(parameters), 3, 3))
+    values[:, 0] = parameters[:, :1] * along_u + parameters[:, 1:] * along_v + plane.Location().Coord()
+    values[:, 1], values[:, 2] = along_u, along_v
+    return values
 
 
 def _placement(surface: BRepAdaptor_Surface) -> tuple[float, ...]:

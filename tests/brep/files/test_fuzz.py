@@ -28,6 +28,8 @@ from tests.reference_shapes import Lip, kernel_lip, write_products
 VARIANTS = 110  # of each of six files, so 660 in all
 SECONDS = 3.0  # after which a reader counts as hanging
 LONGEST_SENTENCE = 1000
+pytestmark = pytest.mark.usefixtures("forked_readers")  # or the kernel would be loaded for every crash
+
 NUMBERS = re.compile(rb"(?<=[\s(,])-?\d+\.?\d*(?=[\s,)])")
 REFERENCES = re.compile(rb"#\d+")
 CUT, FLIP, TYPE, DROP, NUMBER, SWAP = range(6)

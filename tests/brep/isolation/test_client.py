@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from cadpanel.brep.isolation import client, requests, time_limit
+from cadpanel.brep.isolation.interpreter import interpreter
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.survey import survey
@@ -19,6 +20,8 @@ from cadpanel.reference.settings import ReferenceSettings
 from tests.drawn import curve
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
+
+pytestmark = pytest.mark.usefixtures("forked_readers")
 
 PIPE = 65_536  # bytes that a pipe holds
 
@@ -44,6 +47,15 @@ def other_server(monkeypatch):
     yield run
     client.stop_reader()
     monkeypatch.undo()
+
+
+@pytest.fixture
+def own_process(monkeypatch):
+    """Start the second interpreter as the program does."""
+    client.stop_reader()
+    monkeypatch.setattr(client, "interpreter", interpreter)
+    yield
+    client.stop_reader()
 
 
 def test_crash_of_the_reader_is_one_sentence_and_the_next_file_is_read(model, monkeypatch):
@@ -116,16 +128,17 @@ def test_a_larger_file_has_more_time_and_one_that_is_not_there_is_refused_by_its
         survey(tmp_path / "none.brep")
 
 
+@pytest.mark.usefixtures("own_process")
 def test_reader_runs_nothing_that_lies_in_the_current_folder(tmp_path, model, monkeypatch):
     for name in ("random", "copy", "numbers", "token", "numpy", "cadpanel"):
         (tmp_path / f"{name}.py").write_text(f"open('{name} was run', 'w')\nraise SystemExit\n")
     monkeypatch.chdir(tmp_path)
-    client.stop_reader()
     assert survey(model).faces
     assert not list(tmp_path.glob("* was run"))
 
 
 @pytest.mark.skipif(not Path("/proc/self/limits").exists(), reason="needs the limits of a process as a file")
+@pytest.mark.usefixtures("own_process")
 def test_reader_that_nobody_waits_for_ends_itself(model):
     """Its time on the processor is limited by the system, which also counts when the first interpreter is gone."""
     request = requests.work_request("survey", model, ReferenceSettings())

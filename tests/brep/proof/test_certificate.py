@@ -1,6 +1,5 @@
 """The certificate holds for what was delivered and fails for anything that was changed afterwards."""
 
-import sys
 import threading
 from dataclasses import replace
 from typing import Any
@@ -25,6 +24,8 @@ from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError
 from tests.certified import GAP, SEAMS, Delivery, strip
 from tests.shapes import folded_panel, random_panel
+
+pytestmark = pytest.mark.usefixtures("forked_readers")
 
 # A second interpreter whose kernel crashes over a file of one name.
 DIES = """
@@ -204,10 +205,10 @@ def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch
 
 @pytest.mark.parametrize("together", [False, True])
 @pytest.mark.parametrize("file", ["panels_step", "skins_step"])
-def test_an_interpreter_that_dies_over_a_file_is_one_sentence(delivery, monkeypatch, file, together):
+def test_an_interpreter_that_dies_over_a_file_is_one_sentence(delivery, forks, monkeypatch, file, together):
     name = getattr(delivery, file).name
     client.stop_reader()
-    monkeypatch.setattr(client, "interpreter", lambda _: [sys.executable, "-c", DIES.format(name=name)])
+    monkeypatch.setattr(client, "interpreter", lambda _: forks(DIES.format(name=name)))
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0 if together else 1 << 40)
     with pytest.raises(DeliveryError, match=rf"'{name}' makes the CAD kernel crash: it is damaged; write the delivery"):

@@ -2,19 +2,26 @@
 
 Unknowns come in `count` blocks of `size`; a pair of blocks is coupled where some residual sees both. Strips couple
 neighbours only, rings and grids a little more. Blocks are reordered by reverse Cuthill-McKee and the matrix is
-factorized as a band (LAPACK pbtrf), which is linear in the length of a strip.
+factorized as a band (LAPACK pbtrf), which is linear in the length of a strip. Where that band would be wide, as of
+large grids, it is factorized by nested dissection instead.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
-from scipy.linalg.lapack import dpbsv
+from scipy.linalg.lapack import dpbtrf, dpbtrs
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, reverse_cuthill_mckee
 
 from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.solver.dissection import dissect
+from cadpanel.solver.multifrontal import Fronts
+
+# A band that couples blocks so far apart takes longer than a dissection does (both measured on square grids).
+_WIDE = 32
 
 
 @dataclass(slots=True)
@@ -67,6 +74,7 @@ class BlockPattern:
     _diagonal_at: IntArray = field(init=False, repr=False)
     _coupling_at: IntArray = field(init=False, repr=False)
     _lower: tuple[IntArray, IntArray] = field(init=False, repr=False)
+    _fronts: Fronts | None = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Order the blocks and prepare the scatter into band storage."""
@@ -85,6 +93,8 @@ class BlockPattern:
         position[order] = np.arange(self.count)
         set_(self, "_order", order)
         span = int(np.abs(np.diff(position[pairs], axis=1)).max(initial=0))
+        wide = span >= _WIDE
+        set_(self, "_fronts", Fronts.of(dissect(graph), self.size, pairs, self.count) if wide else None)
         width = (span + 1) * self.size
         set_(self, "_width", width)
         # Lower band storage in Fortran order: entry (row, column) stands at [column * width + row - column].
@@ -119,28 +129,65 @@ class BlockPattern:
             normal: the model.
             damping: (count, size) added to the diagonal.
         """
+        factors = self.factorize(normal, damping)
+        return None if factors is None else factors.solve(-normal.gradient)
+
+    def factorize(self, normal: Normal, damping: Array) -> Factors | None:
+        """The Cholesky factors of J^T J + diag(damping), or None if that is not positive definite.
+
+        Args:
+            normal: the model.
+            damping: (count, size) added to the diagonal.
+        """
         diagonal = normal.diagonal.copy()
         i = np.arange(self.size)
         diagonal[:, i, i] += damping
         if not len(self.pairs):
-            return _solve_separate(diagonal, normal.gradient)
+            return _Separate.of(diagonal)
+        if self._fronts is not None:
+            return self._fronts.factorize(diagonal, normal.coupling)
         flat = np.zeros(self._width * self.count * self.size)
         flat[self._diagonal_at] = diagonal[:, self._lower[0], self._lower[1]]
         flat[self._coupling_at] = normal.coupling
-        band = flat.reshape(-1, self._width).T
-        right = -normal.gradient[self._order].reshape(-1)
-        _, solution, info = dpbsv(band, right, lower=1, overwrite_ab=1, overwrite_b=1)
-        if info != 0:
-            return None
-        step = np.empty((self.count, self.size))
-        step[self._order] = solution.reshape(self.count, self.size)
+        band, info = dpbtrf(flat.reshape(-1, self._width).T, lower=1, overwrite_ab=1)
+        return _Band(self._order, band) if info == 0 else None
+
+
+class Factors(Protocol):
+    """A factorized matrix."""
+
+    def solve(self, right: Array) -> Array:
+        """(count, size) what the matrix times which is `right` (count, size)."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class _Band:
+    """The factor of a matrix whose blocks stand in another order, as LAPACK stores it."""
+
+    order: IntArray
+    lower: Array
+
+    def solve(self, right: Array) -> Array:
+        solution, _ = dpbtrs(self.lower, right[self.order].reshape(-1), lower=1, overwrite_b=1)
+        step = np.empty(right.shape)
+        step[self.order] = solution.reshape(right.shape)
         return step
 
 
-def _solve_separate(matrices: Array, gradient: Array) -> Array | None:
-    try:
-        lower = np.linalg.cholesky(matrices)
-    except np.linalg.LinAlgError:
-        return None
-    half = np.linalg.solve(lower, -gradient[..., None])
-    return np.linalg.solve(np.swapaxes(lower, 1, 2), half)[..., 0]
+@dataclass(frozen=True, slots=True)
+class _Separate:
+    """Factors of blocks that are coupled with none."""
+
+    lower: Array
+
+    @staticmethod
+    def of(matrices: Array) -> _Separate | None:
+        try:
+            return _Separate(np.asarray(np.linalg.cholesky(matrices), dtype=np.float64))
+        except np.linalg.LinAlgError:
+            return None
+
+    def solve(self, right: Array) -> Array:
+        half = np.linalg.solve(self.lower, right[..., None])
+        return np.linalg.solve(np.swapaxes(self.lower, 1, 2), half)[..., 0]

@@ -19,6 +19,10 @@ from cadpanel.arrays import Array, IntArray
 SHORTEST = 2
 
 
+# Walks that are cut at a time.
+_CHUNK = 16
+
+
 @dataclass(frozen=True, slots=True)
 class Profile:
     """How walks are cut into patches.
@@ -42,6 +46,18 @@ def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, he
         held: (n, 2) steps, with fractions, at which the only stretch of curved patches is to begin and end; nan where
             it is to be found.
     """
+    # A few walks at a time: all places against all others stay in the processor's cache.
+    parts = [_best_knots(turned[i : i + _CHUNK], curved) for i in range(0, len(turned), _CHUNK)]
+    knots = np.concatenate(parts) if parts else np.empty((0, len(curved) + 1), dtype=np.intp)
+    if even:
+        _even_out(knots, curved)
+    if held is not None and not np.all(np.isnan(held)):
+        _hold(knots, curved, held)
+    return Profile(knots, _angles(turned, knots, curved))
+
+
+def _best_knots(turned: Array, curved: Sequence[bool]) -> IntArray:
+    """(n, k + 1) the steps at which patches that cost least begin and end."""
     count, places = turned.shape
     last = places - 1
     least = max(1, min(SHORTEST, last // len(curved)))
@@ -60,11 +76,7 @@ def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, he
     rows = np.arange(count)
     for patch in range(len(curved) - 1, -1, -1):
         knots[:, patch] = origins[patch][rows, knots[:, patch + 1]]
-    if even:
-        _even_out(knots, curved)
-    if held is not None and not np.all(np.isnan(held)):
-        _hold(knots, curved, held)
-    return Profile(knots, _angles(turned, knots, curved))
+    return knots
 
 
 def _even_out(knots: IntArray, curved: Sequence[bool]) -> None:

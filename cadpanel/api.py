@@ -99,6 +99,7 @@ def fit(
     settings: FitSettings | None = None,
     *,
     progress: Progress | None = None,
+    time_limit: float | None = None,
     **changes: Unpack[FitKeywords],
 ) -> FitResult:
     """Fit all panels of a reference.
@@ -106,7 +107,9 @@ def fit(
     Args:
         reference: what is to be approximated.
         settings: how; by default concurrent plane-cone-plane with gaps of at most 1 mm.
-        progress: told the method, the round and the largest excess over a tolerance (1 where it holds).
+        progress: told the method, the step, the largest excess over a tolerance (1 where it holds) and the RMS
+            deviation in mm; where it returns False the fit ends with the best so far.
+        time_limit: seconds after which the fit ends with the best so far, which keeps all limits but perhaps gaps.
         changes: settings to change, for example gap_tolerance=5.0.
 
     Raises:
@@ -114,7 +117,9 @@ def fit(
         SettingsError: a setting is out of its range.
     """
     _require(reference, Reference, "what is fitted is a reference as read() gives it")
-    return fit_reference(reference, _asked(settings, changes), progress)
+    if time_limit is not None and not time_limit > 0.0:
+        raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
+    return fit_reference(reference, _asked(settings, changes), progress, time_limit=time_limit)
 
 
 def compare(
@@ -133,7 +138,7 @@ def compare(
         settings: tolerance, limits, tilt and restarts; feature and method are those of the four columns.
         out: folder for compare.json, written whole or not at all; None to write nothing.
         overwrite: replace what cadpanel wrote there before.
-        progress: told feature, method, round and largest excess over a tolerance.
+        progress: told feature, method, step, largest excess over a tolerance and RMS deviation in mm.
         changes: settings to change.
 
     Raises:

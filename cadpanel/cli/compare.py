@@ -47,12 +47,12 @@ def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSetti
     from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference
 
-    def tell(feature: str, method: str, round_: int, excess: float) -> None:
+    def tell(feature: str, method: str, count: int, excess: float, rms: float) -> None:
         step = f"{method.replace('_', '-')}, {feature}"
-        if round_ == 0:
+        if count == 0:
             shown.begin(step)
         else:
-            shown.round(step, round_, excess)
+            shown.solving(step, count, excess, rms)
 
     panels = read_reference(file, how)
     return comparison_record(panels, settings, compare_reference(panels, settings, progress=tell))

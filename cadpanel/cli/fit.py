@@ -10,6 +10,7 @@ import typer
 
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
+from cadpanel.cli.interrupt import first_interrupt_ends
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.records.report import ReportModel
@@ -29,16 +30,18 @@ def fit(
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
+    time_limit: options.TimeLimit = None,
 ) -> None:
     """Fit panels to a reference and deliver them as exact solids, with the proof beside them.
 
-    The smallest deviation is found at which every gap stays within --gap-tolerance.
+    The smallest deviation is found at which every gap stays within --gap-tolerance. Ctrl-C while all panels are fitted
+    at once delivers the best so far, a second one leaves nothing.
 
     Exit codes: 0 all is well; 1 it ran, but the tolerance or the proof does not hold; 2 refused.
     """
     began = time.perf_counter()
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
-        report, shortfall = _run(reference, how, settings, sheet, folder, shown)
+        report, shortfall = _run(reference, how, settings, sheet, folder, shown, time_limit)
     if not quiet:
         # The tables are for people; numbers for programs are in report.json.
         from cadpanel.cli.tables import print_report
@@ -51,7 +54,13 @@ def fit(
 
 
 def _run(
-    file: Path, how: ReferenceSettings, settings: FitSettings, sheet: SheetSettings, folder: Path, shown: Steps
+    file: Path,
+    how: ReferenceSettings,
+    settings: FitSettings,
+    sheet: SheetSettings,
+    folder: Path,
+    shown: Steps,
+    time_limit: float | None,
 ) -> tuple[ReportModel, str | None]:
     """Read, fit, build, write and verify; the report, and what the tolerance lacks."""
     shown.begin(_READ, file.name)
@@ -65,8 +74,12 @@ def _run(
     reference = read_reference(file, how)
     seconds_to_read = time.perf_counter() - began
     shown.begin(_FIRST)
-    result = fit_reference(
-        reference, settings, lambda _method, round_, excess: shown.round(_CONCURRENT, round_, excess)
-    )
+    with first_interrupt_ends() as interrupted:
+
+        def tell(_method: str, count: int, excess: float, rms: float) -> bool:
+            shown.solving(_CONCURRENT, count, excess, rms)
+            return not interrupted.heard()
+
+        result = fit_reference(reference, settings, tell, time_limit=time_limit)
     report = fill_delivery(result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
     return report, result.shortfall()

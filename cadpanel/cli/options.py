@@ -40,6 +40,15 @@ Out = Annotated[
     typer.Option("--out", metavar="DIR", parser=folder_named, help="Folder to write, whole or not at all."),
 ]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a delivery that stands there already.")]
+TimeLimit = Annotated[
+    float | None,
+    typer.Option(
+        "--time-limit",
+        metavar="SECONDS",
+        min=0.001,
+        help="End the fit of all panels after so long, with the best so far; what is missed is told.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.")]
 
 

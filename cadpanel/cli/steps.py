@@ -41,12 +41,13 @@ class Steps:
             self.begin(name)
         self._progress.update(self._tasks[name], completed=done, total=of, detail=f"{done} of {of}" if of > 1 else "")
 
-    def round(self, step: str, round_: int, excess: float) -> None:
-        """Say how far the concurrent fit is from its tolerances; begins the step where it has not begun."""
+    def solving(self, step: str, count: int, excess: float, rms: float) -> None:
+        """Say how far the concurrent fit is from its tolerances and the reference; begins where it has not begun."""
         if step not in self._tasks:
             self.begin(step)
         self._progress.update(
-            self._tasks[step], detail=f"round {round_}: worst gap or drift at {excess:.2f} x its limit"
+            self._tasks[step],
+            detail=f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm",
         )
 
     def end(self) -> None:

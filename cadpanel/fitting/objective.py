@@ -9,8 +9,10 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.problem import Problem
 from cadpanel.solver.blocks import BlockPattern, Normal
-from cadpanel.solver.levenberg_marquardt import Bounds
-from cadpanel.terms.term import Term
+from cadpanel.solver.bounds import Bounds
+from cadpanel.solver.held_model import Point
+from cadpanel.terms.state import State
+from cadpanel.terms.term import HeldTerm, Term
 
 
 class Objective:
@@ -42,7 +44,10 @@ class Objective:
 
     def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
         """See `solver.Model.linearize`."""
-        state = self.problem.state(unknowns, derivatives=True)
+        return self.linearize_at(self.problem.state(unknowns, derivatives=True))
+
+    def linearize_at(self, state: State) -> tuple[Array, Normal]:
+        """The same at a state that was walked with derivatives."""
         normal = Normal.zero(self.pattern.count, self.pattern.size, len(self.pattern.pairs))
         cost = np.zeros(self.problem.panels)
         for term in self.terms:
@@ -53,24 +58,47 @@ class Objective:
         return cost, normal
 
 
-class Frozen:
-    """A model of which only some unknowns may move.
+class HeldObjective:
+    """A sum of terms on a problem, and vectors that are held within tolerances.
 
     Attributes:
+        problem: what the terms are about.
+        held: the terms that are held.
         pattern: which panels are coupled.
         bounds: of the unknowns.
     """
 
-    def __init__(self, model: Objective, moving: BoolArray) -> None:
-        """`moving` (panels, size) says which unknowns may move; the others stay where they start."""
-        self.pattern, self.bounds = model.pattern, model.bounds
-        self._model, self._held = model, ~moving
+    def __init__(
+        self, of: Problem, terms: Sequence[Term], held: Sequence[HeldTerm], *, moving: BoolArray | None = None
+    ) -> None:
+        """What is to be held, and what moves.
 
-    def cost(self, unknowns: Array) -> Array:
-        """See `solver.Model.cost`."""
-        return self._model.cost(unknowns)
+        Args:
+            of: the panels.
+            terms: what is to be small.
+            held: what is to stay within tolerances; its weights count besides.
+            moving: (panels, size) which unknowns may move; all, or those alone. `at` begins where they start.
+        """
+        self.problem, self.held = of, tuple(held)
+        self._free = Objective(of, terms, coupled=True)
+        self.pattern, self.bounds = self._free.pattern, Bounds(*of.bounds)
+        self._moving = moving
 
-    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
-        """See `solver.Model.linearize`."""
-        cost, normal = self._model.linearize(unknowns)
-        return cost, normal.without(self._held, self.pattern.pairs)
+    def starting_from(self, start: Array) -> Array:
+        """The unknowns to begin with; those that may not move are fixed there from now on."""
+        if self._moving is not None:
+            lower, upper = (np.where(self._moving, bound, start) for bound in self.problem.bounds)
+            self.bounds = Bounds(lower, upper)
+        return self.bounds.clip(start)
+
+    def at(self, unknowns: Array) -> Point:
+        """See `solver.HeldModel.at`."""
+        state = self.problem.state(unknowns, derivatives=True)
+        cost, normal = self._free.linearize_at(state)
+        linear = [term.linear(state) for term in self.held]
+        return Point(unknowns, cost, normal, tuple(v for v, _ in linear), tuple(j for _, j in linear))
+
+    def vectors(self, unknowns: Array) -> tuple[Array, ...]:
+        """See `solver.HeldModel.vectors`."""
+        state = self.problem.state(unknowns)
+        return tuple(term.vectors(state) for term in self.held)

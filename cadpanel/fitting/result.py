@@ -16,8 +16,9 @@ from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.catalogue import LIMITS
 
-# What the method, the round and the largest excess over a tolerance are told to while a fit runs.
-Progress = Callable[[str, int, float], None]
+Progress = Callable[[str, int, float, float], bool | None]
+"""Told the method, the step, the largest excess over a tolerance (1 where all hold) and the RMS deviation in mm while a
+fit runs; False ends it with the best so far."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,31 +29,40 @@ _PROMOTIONS = 3
 _REPLACEMENTS = 8
 
 
-def fit(reference: Reference, settings: FitSettings | None = None, progress: Progress | None = None) -> FitResult:
+def fit(
+    reference: Reference,
+    settings: FitSettings | None = None,
+    progress: Progress | None = None,
+    *,
+    time_limit: float | None = None,
+) -> FitResult:
     """Fit all panels of a reference.
 
     Args:
         reference: what is to be approximated.
         settings: how; by default concurrent plane-cone-plane with gaps of at most 1 mm.
-        progress: told of every round of the concurrent fit.
+        progress: told of every step of the concurrent fit; False ends it.
+        time_limit: seconds after which the concurrent fit ends with the best so far. What comes before it, the fits of
+            every panel alone, is always finished.
 
     Raises:
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: no starting values are known for the feature.
     """
     began = time.perf_counter()
+    watch = _Watch(progress, None if time_limit is None else began + time_limit)
     how = settings or FitSettings()
     if not how.automatic:
         features = [how.feature_for(len(panel.edges)) for panel in reference.panels]
-        return _fit(reference, how, features, began, progress)
+        return _fit(reference, how, features, began, watch)
     choice = Choice(reference, how)
-    result = _fit(reference, how, choice.features(), began, progress)
+    result = _fit(reference, how, choice.features(), began, watch)
     # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better, and those
     # that cannot be built any more another one.
     # The last result that can be built stands.
     buildable: FitResult | None = None
     promotions = replacements = 0
-    while True:
+    while not watch.over:
         lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
         if not len(lost):
             buildable = result
@@ -68,8 +77,27 @@ def fit(reference: Reference, settings: FitSettings | None = None, progress: Pro
             changed = choice.forbid(lost)
         if not changed:
             break
-        result = _fit(reference, how, choice.features(), began, progress)
+        result = _fit(reference, how, choice.features(), began, watch)
     return buildable or result
+
+
+class _Watch:
+    """Tells of every step, and knows whether to go on.
+
+    Attributes:
+        over: whether the time is over, or somebody said so.
+    """
+
+    def __init__(self, progress: Progress | None, deadline: float | None) -> None:
+        self._progress, self._deadline = progress, deadline
+        self.over = False
+
+    def tell(self, method: str, step: int, excess: float, rms: float) -> bool:
+        """Whether to go on."""
+        if self._progress is not None:
+            self.over |= self._progress(method, step, excess, rms) is False
+        self.over |= self._deadline is not None and time.perf_counter() > self._deadline
+        return not self.over
 
 
 def _fit(
@@ -77,15 +105,14 @@ def _fit(
     how: FitSettings,
     features: Sequence[PanelFeature],
     began: float,
-    progress: Progress | None,
+    watch: _Watch,
 ) -> FitResult:
     """Fit panels that have these features."""
     posed, starts = pose(reference, features, how.blend)
     local = fit_local(posed, reference, starts, how)
 
-    def tell(round_: int, excess: float) -> None:
-        if progress is not None:
-            progress(how.method, round_, excess)
+    def tell(step: int, excess: float, rms: float) -> bool:
+        return watch.tell(how.method, step, excess, rms)
 
     method = method_for(how)
     chosen = local if method == LOCAL else method.fit(posed, [local.unknowns], how, tell)

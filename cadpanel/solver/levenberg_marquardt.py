@@ -5,9 +5,6 @@ problem, run in one call and each behaves as if it were alone. Where a step fail
 did harm: otherwise one difficult spot would hold up a strip of thousands of panels. Damping every block by itself was
 tried and given up: it converges linearly where this converges quadratically.
 
-Unknowns may have bounds. One that stands on its bound and would be pushed beyond it is held there for the step, and
-steps are cut at the bounds (Bertsekas, Projected Newton methods, SIAM J. Control and Optimization 20, 1982).
-
 Method: Nielsen's damping (H. B. Nielsen, Damping parameter in Marquardt's method, IMM-REP-1999-05) with Marquardt's
 scaling by the diagonal, on the normal equations.
 """
@@ -21,6 +18,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import BlockPattern, Normal
+from cadpanel.solver.bounds import Bounds, bounded_step
 from cadpanel.solver.stop import Stop
 
 # Marquardt's scale of an unknown that no residual sees is 0; this share of the block's largest keeps the step finite.
@@ -53,29 +51,6 @@ class Model(Protocol):
     def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
         """The cost as above, and its Gauss-Newton model."""
         ...
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """Least and greatest values of the unknowns, (count, size) each; infinite where there is none."""
-
-    lower: Array
-    upper: Array
-
-    def clip(self, unknowns: Array) -> Array:
-        """The nearest unknowns within the bounds."""
-        clipped: Array = np.clip(unknowns, self.lower, self.upper)
-        return clipped
-
-    def hold(self, unknowns: Array) -> bool:
-        """Whether all unknowns are within the bounds."""
-        return bool(np.all((unknowns >= self.lower) & (unknowns <= self.upper)))
-
-    def blocked(self, unknowns: Array, gradient: Array) -> BoolArray:
-        """(count, size) which unknowns stand on a bound beyond which the cost would fall."""
-        at_lower, at_upper = unknowns <= self.lower, unknowns >= self.upper
-        blocked: BoolArray = (at_lower & (gradient > 0.0)) | (at_upper & (gradient < 0.0))
-        return blocked
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,22 +113,22 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         iterations += 1
         scale = np.einsum("bii->bi", normal.diagonal)
         scale = mu[component, None] * np.maximum(scale, _LEAST_SCALE * scale.max(axis=1, keepdims=True))
-        step, promised, cut = _step(pattern, normal, scale, unknowns, bounds)
-        if step is None:
+        bounded = bounded_step(pattern, normal, scale, unknowns, bounds)
+        if bounded is None:
             mu, growth = mu * growth, growth * 2.0
             continue
-        step[done[component]] = 0.0
-        before, hoped = per_component(booked), per_component(promised)
+        bounded.step[done[component]] = 0.0
+        before, hoped = per_component(booked), per_component(bounded.promised)
         # Cut at a bound a long step may lead uphill; that is too little damping and no sign of rest.
-        hoped[(hoped <= 0.0) & (per_component(cut) > 0.0)] = np.inf
-        trial = unknowns + step
+        hoped[(hoped <= 0.0) & (per_component(bounded.cut) > 0.0)] = np.inf
+        trial = unknowns + bounded.step
         # Most steps are good, so the next model is worked out at once: it costs little more than the cost alone.
         last = iterations == stopping.iterations
         cost, ahead = _tried(model, trial, last)
         gain = _gain(before, per_component(cost), hoped)
         failed = (gain <= 0.0) & ~done
         if failed.any():
-            harm = _gain(pattern.around(booked), pattern.around(cost), pattern.around(promised)) <= 0.0
+            harm = _gain(pattern.around(booked), pattern.around(cost), pattern.around(bounded.promised)) <= 0.0
             trial = np.where((failed[component] & harm)[:, None], unknowns, trial)
             cost, ahead = _tried(model, trial, last)
             stuck = failed & ~(per_component(cost) < before)
@@ -175,35 +150,6 @@ def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Arr
     shrink = np.maximum(1.0 / 3.0, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
     mu = np.clip(np.where(failed, mu * growth, mu * shrink), _LEAST_DAMPING, _MOST_DAMPING)
     return mu, np.where(failed, np.minimum(growth * 2.0, _MOST_GROWTH), 2.0)
-
-
-def _step(
-    pattern: BlockPattern, normal: Normal, damping: Array, unknowns: Array, bounds: Bounds | None
-) -> tuple[Array | None, Array, Array]:
-    """One step within the bounds.
-
-    Returns:
-        the step (count, size) or None without one; the decrease (count,) that the model promises; and (count,) 1 where
-        the step was cut at a bound.
-    """
-    zero = np.zeros(pattern.count)
-    if bounds is None:
-        step = pattern.solve(normal, damping)
-        # Of an unhindered step the damped model promises s . (damping s - gradient) / 2.
-        return step, zero if step is None else 0.5 * np.sum(step * (damping * step - normal.gradient), axis=1), zero
-    blocked = bounds.blocked(unknowns, normal.gradient)
-    if blocked.any():
-        wanted = pattern.solve(normal.without(blocked, pattern.pairs), np.where(blocked, 0.0, damping))
-    else:
-        wanted = pattern.solve(normal, damping)
-    if wanted is None:
-        return None, zero, zero
-    if not blocked.any() and bounds.hold(unknowns + wanted):
-        return wanted, 0.5 * np.sum(wanted * (damping * wanted - normal.gradient), axis=1), zero
-    step = bounds.clip(unknowns + wanted) - unknowns
-    bent = np.sum(step * pattern.multiply(normal, step), axis=1)
-    cut = np.any(np.abs(step - wanted) > _ROUNDING * np.abs(wanted), axis=1)
-    return step, -np.sum(step * normal.gradient, axis=1) - 0.5 * bent, cut.astype(np.float64)
 
 
 def _tried(model: Model, trial: Array, last: bool) -> tuple[Array, Normal | None]:

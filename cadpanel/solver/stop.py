@@ -15,6 +15,7 @@ class Stop(Enum):
     TOO_COSTLY = (
         "no approximation would be left if the tolerances were held: allow wider ones, or a model that follows better"
     )
+    TOLD = "it was told to: what it had by then is the best so far, more time would better it"
     OPEN_BETWEEN = (
         "curves part far between the points at which they are held together: allow a wider tolerance, or a model that "
         "follows better"

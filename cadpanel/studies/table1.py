@@ -14,7 +14,7 @@ METHODS: tuple[Method, ...] = ("two_stage", "concurrent")
 FEATURES = ("plane-cylinder-plane", "plane-cone-plane")
 
 # The column (feature and method) that is being fitted, the round, and the largest excess over a tolerance.
-Progress = Callable[[str, str, int, float], None]
+Progress = Callable[[str, str, int, float, float], None]
 
 
 def compare(
@@ -25,7 +25,7 @@ def compare(
     Args:
         reference: what is to be approximated.
         settings: tolerance, limits, tilt and restarts; its feature and method are not used.
-        progress: told when a column begins (round 0), and of every round of a concurrent fit.
+        progress: told when a column begins (step 0), and of every step of a concurrent fit.
 
     Raises:
         PanelError: a panel's faces are nothing that a feature could approximate.
@@ -37,9 +37,9 @@ def compare(
 def _column(
     reference: Reference, settings: FitSettings, feature: str, method: Method, progress: Progress | None
 ) -> FitResult:
-    def tell(_method: str, round_: int, excess: float) -> None:
+    def tell(_method: str, step: int, excess: float, rms: float) -> None:
         if progress is not None:
-            progress(feature, method, round_, excess)
+            progress(feature, method, step, excess, rms)
 
-    tell(method, 0, 0.0)
+    tell(method, 0, 0.0, 0.0)
     return fit(reference, replace(settings, feature=feature, method=method, max_deviation=None), tell)

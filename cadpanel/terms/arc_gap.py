@@ -1,9 +1,14 @@
 """Gaps between the conic arcs of neighbours whose ends are alike, between their corners.
 
-A point on one panel's arc is held near the other panel's arc by its distances from the two surfaces whose intersection
-that arc is: the cone, and the plane that cuts it. Unlike the distance of corresponding points this leaves the points
-free to pass each other along the seam. Either panel's points are held to the other's arc: the order of the two must not
-matter.
+A point on one panel's arc is held near the other panel's arc by its distances d1, d2 from the two surfaces whose
+intersection that arc is: the cone, and the plane that cuts it. Unlike the distance of corresponding points this leaves
+the points free to pass each other along the seam. Either panel's points are held to the other's arc: the order of the
+two must not matter.
+
+Where cone and plane meet at a slant a point may be near both and far from their intersection. With c and s the cosine
+and sine between their normals its distance from there is that of (d1, (d2 - c d1) / s), to first order: the coordinates
+of a point of the plane spanned by two unit vectors, from its products with them. `straighten` measures so. The angle is
+that of one state and does not follow the unknowns: it hardly changes while a gap is closed.
 """
 
 from __future__ import annotations
@@ -15,12 +20,14 @@ import numpy as np
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.geometry.vectors import dot
-from cadpanel.solver.blocks import Normal
-from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.solver.hold import Hold
 from cadpanel.terms.placement import Placement
-from cadpanel.terms.rows import Rows, add_rows, booked_cost
 from cadpanel.terms.seams import SeamBatch, arc_patches, arc_places
 from cadpanel.terms.state import State, slopes
+from cadpanel.terms.term import HeldTerm
+
+# Where the surfaces nearly touch they meet in no arc at all: no smaller sine is taken for their angle.
+_LEAST_SINE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +48,17 @@ class _Side:
     end: IntArray
 
 
-class ArcGap:
+class ArcGap(HeldTerm):
     """Holds the conic arcs of neighbours within the tolerance of each other."""
 
     def __init__(self, seams: SeamBatch, place: Placement, layout: Layout, *, tolerance: float) -> None:
         """Hold the arcs of a batch of curved edges that are alike within `tolerance`, in the solver's length."""
         self.seams, self.place = seams, place
+        self.blocks, self.pair, self.panels = seams.blocks, seams.pair, len(place.origins)
         self._sides = tuple(self._side(layout, side) for side in (0, 1))
         points = sum(side.places.shape[1] for side in self._sides)
-        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, least=1e-9)
+        self._metric: Array | None = None
+        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, gives_way=True)
 
     def _side(self, layout: Layout, side: int) -> _Side:
         seams = self.seams
@@ -64,32 +73,35 @@ class ArcGap:
         )
 
     def vectors(self, state: State) -> Array:
-        """(seams, points, 2) distances from the other panel's cone and from its cut plane."""
-        return np.concatenate([self._distances(state, side)[0] for side in self._sides], axis=1)
+        """(seams, points, 2) distances from the other panel's cone and cut plane, or from where these two meet."""
+        return self._told(np.concatenate([self._distances(state, side)[0] for side in self._sides], axis=1))
 
-    def cost(self, state: State) -> Array:
-        """See `Term.cost`."""
-        residual = self.hold.roots()[..., None] * self.vectors(state)
-        return booked_cost(residual, tuple(self.seams.panels.T), len(self.place.origins))
+    def straighten(self, state: State) -> None:
+        """From now on measure from where cone and cut plane meet, by the angles that they have in this state."""
+        cosines = []
+        for side in self._sides:
+            _, _, inner = self._distances(state, side)
+            cosines.append(dot(-inner[..., 3:6], state.cuts.m[side.other, side.end][:, None]))
+        cosine = np.concatenate(cosines, axis=1)
+        sine = np.sqrt(np.maximum(1.0 - cosine**2, _LEAST_SINE**2))
+        self._metric = np.zeros((*cosine.shape, 2, 2))
+        self._metric[..., 0, 0] = 1.0
+        self._metric[..., 1, 0], self._metric[..., 1, 1] = -cosine / sine, 1.0 / sine
 
-    def rows(self, state: State) -> list[Rows]:
-        """See `Term.rows`."""
-        groups = len(self.seams.panels)
+    def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
+        """See `HeldTerm.linear`."""
         first, second = (self._linearized(state, side) for side in self._sides)
-        roots = self.hold.roots()[..., None]
-        distances = np.concatenate([first[0], second[0]], axis=1)
-        to_first = np.concatenate([first[1], second[2]], axis=1)
-        to_second = np.concatenate([first[2], second[1]], axis=1)
-        jacobians = tuple(
-            (roots[..., None] * part).reshape(groups, distances[0].size, part.shape[-1])
-            for part in (to_first, to_second)
-        )
-        panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
-        return [Rows((roots * distances).reshape(groups, -1), panels, jacobians, self.seams.pair)]
+        parts = ((first[0], second[0]), (first[1], second[2]), (first[2], second[1]))
+        distances, to_first, to_second = (np.concatenate(part, axis=1) for part in parts)
+        return self._told(distances), (self._told(to_first), self._told(to_second))
 
-    def add_to(self, normal: Normal, state: State) -> Array:
-        """See `Term.add_to`."""
-        return add_rows(self.rows(state), normal, len(self.place.origins))
+    def _told(self, distances: Array) -> Array:
+        """Distances (seams, q, 2), or their derivatives (seams, q, 2, unknowns), as they are measured."""
+        if self._metric is None:
+            return distances
+        if distances.ndim == self._metric.ndim:
+            return self._metric @ distances
+        return (self._metric @ distances[..., None])[..., 0]
 
     def _distances(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
         """Distances (seams, q, 2), the points (seams, q, 3) in the other panels' frames, and the cones' inner rates."""

@@ -14,12 +14,11 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
 from cadpanel.geometry.vectors import dot
-from cadpanel.solver.blocks import Normal
-from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.solver.hold import Hold
 from cadpanel.terms.placement import Placement
-from cadpanel.terms.rows import Rows, add_rows, booked_cost
 from cadpanel.terms.seams import Movers, SeamBatch, movers
 from cadpanel.terms.state import State, slopes
+from cadpanel.terms.term import HeldTerm
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,40 +35,28 @@ class _Held:
     by_other: Array | None
 
 
-class MixedGap:
+class MixedGap(HeldTerm):
     """Holds edges that are not alike within the tolerance of each other."""
 
     def __init__(self, seams: SeamBatch, place: Placement, layout: Layout, *, tolerance: float) -> None:
         """Hold the edges of a batch within `tolerance`, in units of the solver's length."""
         self.seams, self.place = seams, place
+        self.blocks, self.pair, self.panels = seams.blocks, seams.pair, len(place.origins)
         self._movers: tuple[Movers, Movers] = (movers(layout, seams, 0), movers(layout, seams, 1))
         points = sum(one.places.shape[1] for one in self._movers)
-        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, least=1e-9)
+        self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, gives_way=True)
 
     def vectors(self, state: State) -> Array:
         """(seams, points, 3) from the other panel's edge."""
         return np.concatenate([self._held(state, side, derivatives=False).vectors for side in (0, 1)], axis=1)
 
-    def cost(self, state: State) -> Array:
-        """See `Term.cost`."""
-        residual = self.hold.roots()[..., None] * self.vectors(state)
-        return booked_cost(residual, tuple(self.seams.panels.T), len(self.place.origins))
-
-    def rows(self, state: State) -> list[Rows]:
-        """See `Term.rows`."""
-        groups, roots = len(self.seams.panels), self.hold.roots()[..., None]
+    def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
+        """See `HeldTerm.linear`."""
         first, second = (self._held(state, side, derivatives=True) for side in (0, 1))
-        vectors = np.concatenate([first.vectors, second.vectors], axis=1)
         jacobians = []
         for parts in ((first.by_mover, second.by_other), (first.by_other, second.by_mover)):
-            whole = np.concatenate([part for part in parts if part is not None], axis=1)
-            jacobians.append((roots[..., None] * whole).reshape(groups, vectors[0].size, -1))
-        panels = (self.seams.panels[:, 0], self.seams.panels[:, 1])
-        return [Rows((roots * vectors).reshape(groups, -1), panels, tuple(jacobians), self.seams.pair)]
-
-    def add_to(self, normal: Normal, state: State) -> Array:
-        """See `Term.add_to`."""
-        return add_rows(self.rows(state), normal, len(self.place.origins))
+            jacobians.append(np.concatenate([part for part in parts if part is not None], axis=1))
+        return np.concatenate([first.vectors, second.vectors], axis=1), tuple(jacobians)
 
     def _held(self, state: State, side: int, *, derivatives: bool) -> _Held:
         own, other = self.seams.panels[:, side], self.seams.panels[:, 1 - side]

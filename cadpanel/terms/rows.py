@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.solver.scatter import scatter_add
 
 if TYPE_CHECKING:
     from cadpanel.solver.blocks import Normal
@@ -66,17 +67,3 @@ def booked_cost(residual: Array, panels: Sequence[IntArray], count: int) -> Arra
     for index in panels:
         cost += np.bincount(index, share, minlength=count)
     return cost
-
-
-def scatter_add(target: Array, index: IntArray, values: Array) -> None:
-    """target[index] += values, adding up where an index repeats; `index` is (groups,), `values` (groups, ...)."""
-    if np.all(index[1:] > index[:-1]):
-        target[index] += values
-        return
-    # Here, not above: settings ask limits for their ranges, and neither help nor a refusal should wait for SciPy.
-    from scipy.sparse import csr_array
-
-    groups = len(index)
-    gather = csr_array((np.ones(groups), (index, np.arange(groups))), shape=(len(target), groups))
-    summed: Array = np.asarray(gather @ values.reshape(groups, -1))
-    target += summed.reshape(target.shape)

@@ -39,6 +39,11 @@ class SeamBatch:
     curved: tuple[tuple[bool, ...], tuple[bool, ...]]
     alike: bool
 
+    @property
+    def blocks(self) -> tuple[IntArray, IntArray]:
+        """(s,) the lower and the higher panels."""
+        return self.panels[:, 0], self.panels[:, 1]
+
     def straight(self, side: int) -> bool:
         """Whether the edges of the first (0) or second (1) panels are segments."""
         return self.curved[side] == (False,)

@@ -7,6 +7,8 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -41,11 +43,21 @@ def heed_every_signal() -> None:
         signal.signal(one, signal.SIG_DFL)
 
 
-@pytest.mark.parametrize("fitting", [False, True], ids=["while the kernel loads", "while it fits"])
+NOTHING: list[str] = []
+INTERRUPT = (signal.SIGINT, 130, ["Interrupted."])
+KILL, HANG_UP = (signal.SIGTERM, 143, NOTHING), (signal.SIGHUP, 143, NOTHING)
+
+
 @pytest.mark.parametrize(
-    ("sent", "code", "said"),
-    [(signal.SIGINT, 130, ["Interrupted."]), (signal.SIGTERM, 143, []), (signal.SIGHUP, 143, [])],
-    ids=["interrupt", "kill", "closed terminal"],
+    ("fitting", "sent", "code", "said"),
+    [(False, *INTERRUPT), (False, *KILL), (True, *KILL), (False, *HANG_UP), (True, *HANG_UP)],
+    ids=[
+        "interrupted while the kernel loads",
+        "killed while the kernel loads",
+        "killed while it fits",
+        "no terminal while the kernel loads",
+        "no terminal while it fits",
+    ],
 )
 def test_whoever_stops_it_finds_nothing_left(
     lip_step: Path,
@@ -57,7 +69,18 @@ def test_whoever_stops_it_finds_nothing_left(
     said: list[str],
 ) -> None:
     told = tmp_path_factory.mktemp("told") / "it fits"
-    program = [sys.executable, "-c", TELLS_WHEN_IT_FITS.format(told=str(told))] if fitting else PROGRAM
+    with started(lip_step, tmp_path, told if fitting else None) as process:
+        os.kill(process.pid, sent)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert err.splitlines()[-1:] == said
+    assert list(tmp_path.iterdir()) == []
+
+
+@contextmanager
+def started(lip_step: Path, tmp_path: Path, told: Path | None) -> Iterator[subprocess.Popen[str]]:
+    """The program, which has been fitting for a while if it is to tell that it fits, or else loads the kernel."""
+    program = PROGRAM if told is None else [sys.executable, "-c", TELLS_WHEN_IT_FITS.format(told=str(told))]
     with subprocess.Popen(
         [*program, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--restarts", "1000"],
         stderr=subprocess.PIPE,
@@ -67,15 +90,36 @@ def test_whoever_stops_it_finds_nothing_left(
     ) as process:
         try:
             give_up = time.monotonic() + 60.0
-            while not (told.exists() if fitting else list(tmp_path.glob(".cadpanel-*"))):
+            while not (list(tmp_path.glob(".cadpanel-*")) if told is None else told.exists()):
                 assert time.monotonic() < give_up
                 time.sleep(0.05)
             time.sleep(GETS_GOING)
             assert process.poll() is None
-            os.kill(process.pid, sent)
-            _, err = process.communicate(timeout=60)
+            yield process
         finally:
             process.kill()
-    assert process.returncode == code
-    assert err.splitlines()[-1:] == said
+
+
+def test_the_first_interrupt_while_it_fits_delivers_the_best_so_far(
+    lip_step: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    with started(lip_step, tmp_path, tmp_path_factory.mktemp("told") / "it fits") as process:
+        time.sleep(1.0)
+        os.kill(process.pid, signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert "Written" in out
+    assert (tmp_path / "out" / "report.json").is_file()
+
+
+def test_the_second_interrupt_stops_it_and_leaves_nothing(
+    lip_step: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    with started(lip_step, tmp_path, tmp_path_factory.mktemp("told") / "it fits") as process:
+        for _ in range(2):
+            time.sleep(0.02)
+            os.kill(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.splitlines()[-1:] == ["Interrupted."]
     assert list(tmp_path.iterdir()) == []

@@ -172,7 +172,7 @@ def test_a_strip_of_all_but_cylinders_holds_its_proof(tmp_path: Path) -> None:
     """Apexes lie kilometres away there; their numbers must still say where the panel is."""
     result = fit(reference(STRAIGHT))
     report = deliver(result, tmp_path / "out")
-    assert report.summary.max_seam_gap < 0.01
+    assert report.summary.max_seam_gap < 0.05
     assert verify(tmp_path / "out").holds
 
 

@@ -99,7 +99,7 @@ def test_limits_that_hold_cost_nothing_and_those_that_break_say_by_how_much(name
     state = State(layout, layout.walk(unknowns, derivatives=False))
     for tiny, huge in zip(limits_of(of, len(unknowns), 1e-6), limits_of(of, len(unknowns), 5.0), strict=True):
         assert not tiny.cost(state).any()
-        assert np.all(tiny.vectors(state) == 0.0)
+        assert np.all(tiny.vectors(state) < 0.0)
         assert np.all(huge.vectors(state) > 0.0)
         assert np.all(huge.cost(state) > 0.0)
 
@@ -123,7 +123,7 @@ def test_the_radius_at_a_corner_is_the_distance_to_the_axis_over_the_cosine():
 @chains
 @pytest.mark.parametrize("least", [0.05, 0.3, 2.0])
 def test_a_limit_holds_exactly_from_its_least_length_on(name, least):
-    """A tenth more is asked for, and a tenth is what the lack may be."""
+    """A tenth more is asked for, and a tenth is what the lack may be; what is longer lacks less than nothing."""
     of = FEATURES[name]
     unknowns = random_unknowns(of, 6)
     layout = Layout.of([of] * len(unknowns))
@@ -132,7 +132,7 @@ def test_a_limit_holds_exactly_from_its_least_length_on(name, least):
     for limit in limits_of(of, len(unknowns), least):
         lengths, _ = limit.lengths(walked, state.corners, derivatives=False)
         lack = limit.vectors(state)[..., 0]
-        np.testing.assert_allclose(lack, np.maximum(1.1 * least - lengths, 0.0), atol=1e-12)
+        np.testing.assert_allclose(lack, 1.1 * least - lengths, atol=1e-12)
         assert (limit.hold.excess(limit.vectors(state)) <= 1.0) == bool((lengths >= least).all())
 
 

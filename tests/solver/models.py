@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.solver.blocks import BlockPattern, Normal
-from cadpanel.solver.levenberg_marquardt import Bounds
-from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.solver.bounds import Bounds
+from cadpanel.solver.held_model import Point
+from cadpanel.solver.hold import Hold
 
 Residual = Callable[[Array], Array]
 
@@ -97,81 +99,93 @@ def powell_jacobian(u: Array) -> Array:
     )
 
 
-class HeldPoints:
-    """Points that want to be at their targets, held near fixed centres: half the squared distance, |x - centre| <= tau.
+class HeldBatch:
+    """Vectors x_second - x_first - offset of pairs of points, or x - offset of single ones, held within distances."""
 
-    The solution is known: the target's projection onto the ball.
-    """
+    def __init__(self, hold: Hold, offset: Array, blocks: tuple[IntArray, ...], pair: IntArray | None = None) -> None:
+        """`offset` (groups, vectors, d)."""
+        self.hold, self.offset, self.blocks, self.pair = hold, offset, blocks, pair
 
-    def __init__(self, targets: Array, centres: Array, radius: Array, *, weight: float = 1.0) -> None:
-        """`targets` and `centres` (points, d), `radius` (points,)."""
-        self.targets, self.centres = targets, centres
-        self.hold = Hold(radius[:, None], weight=weight, least=1e-9)
-        self.bounds = None
-        self.pattern = pattern(targets.shape[0], targets.shape[1], [])
+    def vectors(self, unknowns: Array) -> Array:
+        """(groups, vectors, d)."""
+        of = [unknowns[block] for block in self.blocks]
+        apart = of[0] if len(of) == 1 else of[1] - of[0]
+        return np.asarray(apart[:, None] - self.offset)
 
-    def vectors_at(self, unknowns: Array) -> Array:
-        """(points, 1, d) from the centres."""
-        vectors: Array = (unknowns - self.centres)[:, None]
-        return vectors
+    def jacobians(self) -> tuple[Array, ...]:
+        """For each block (groups, vectors, d, d)."""
+        unit = np.broadcast_to(np.eye(self.offset.shape[-1]), (*self.offset.shape, self.offset.shape[-1]))
+        return (unit,) if len(self.blocks) == 1 else (-unit, unit)
+
+
+class HeldTargets:
+    """Points (count, d) that want to be at their targets, half the squared distance, and batches that are held."""
+
+    def __init__(self, targets: Array, held: Sequence[HeldBatch], pairs: Sequence[tuple[int, int]] = ()) -> None:
+        """`targets` (points, d)."""
+        self.targets, self.held = targets, tuple(held)
+        free = np.full(targets.shape, np.inf)
+        self.bounds = Bounds(-free, free)
+        self.pattern = pattern(targets.shape[0], targets.shape[1], list(pairs))
 
     def free_cost(self, unknowns: Array) -> float:
-        """The cost without the held part."""
+        """The cost of what is not held."""
         return 0.5 * float(np.sum((unknowns - self.targets) ** 2))
 
-    def cost(self, unknowns: Array) -> Array:
-        """Target and held part together."""
-        cost: Array = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
-        cost += 0.5 * self.hold.weight[:, 0] * np.sum((unknowns - self.centres) ** 2, axis=1)
-        return cost
+    def vectors(self, unknowns: Array) -> tuple[Array, ...]:
+        """See `solver.HeldModel.vectors`."""
+        return tuple(batch.vectors(unknowns) for batch in self.held)
 
-    def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
-        """The model, which is exact."""
-        normal = Normal.zero(unknowns.shape[0], unknowns.shape[1], 0)
-        weight = self.hold.weight
-        normal.gradient += unknowns - self.targets + weight * (unknowns - self.centres)
-        normal.diagonal += (1.0 + weight)[..., None] * np.eye(unknowns.shape[1])
-        return self.cost(unknowns), normal
+    def at(self, unknowns: Array) -> Point:
+        """See `solver.HeldModel.at`; the model is exact."""
+        count, size = unknowns.shape
+        normal = Normal.zero(count, size, len(self.pattern.pairs))
+        normal.gradient += unknowns - self.targets
+        normal.diagonal += np.eye(size)
+        cost = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
+        return Point(unknowns, cost, normal, self.vectors(unknowns), tuple(batch.jacobians() for batch in self.held))
 
 
-class HeldChain:
-    """Neighbours in a chain held near each other: |x_k+1 - x_k| <= tau while each wants to be at its target."""
+def held_points(targets: Array, centres: Array, radius: Array, **how: Any) -> HeldTargets:
+    """Points held near fixed centres, |x - centre| <= radius; each ends at its target's projection onto its ball."""
+    hold = Hold(radius[:, None], **{"weight": 0.0, "gives_way": True, **how})
+    return HeldTargets(targets, [HeldBatch(hold, centres[:, None], (np.arange(len(targets)),))])
 
-    def __init__(self, targets: Array, radius: float) -> None:
-        """`targets` (points, d)."""
-        self.targets = targets
-        self.hold = Hold(np.full((len(targets) - 1, 1), radius), weight=1.0, least=1e-9)
-        self.bounds = None
+
+def held_chain(targets: Array, radius: float, **how: Any) -> HeldTargets:
+    """Neighbours in a chain held near each other: |x_k+1 - x_k| <= radius."""
+    count, size = targets.shape
+    hold = Hold(np.full((count - 1, 1), radius), **{"weight": 0.0, "gives_way": True, **how})
+    first = np.arange(count - 1)
+    batch = HeldBatch(hold, np.zeros((count - 1, 1, size)), (first, first + 1), first)
+    return HeldTargets(targets, [batch], strip(count))
+
+
+class SpringChain:
+    """Points (count, d) that want to be at their targets and near their neighbours: half of all squared distances."""
+
+    def __init__(self, targets: Array) -> None:
+        self.targets, self.bounds = targets, None
         self.pattern = pattern(targets.shape[0], targets.shape[1], strip(len(targets)))
 
-    def vectors_at(self, unknowns: Array) -> Array:
-        """(points - 1, 1, d) from each to the next."""
-        vectors: Array = np.diff(unknowns, axis=0)[:, None]
-        return vectors
-
-    def free_cost(self, unknowns: Array) -> float:
-        """The cost without the held part."""
-        return 0.5 * float(np.sum((unknowns - self.targets) ** 2))
-
     def cost(self, unknowns: Array) -> Array:
-        """Target and held part together."""
+        """Of the targets, and each spring booked on its first point."""
         cost: Array = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
-        cost[:-1] += 0.5 * self.hold.weight[:, 0] * np.sum(np.diff(unknowns, axis=0) ** 2, axis=1)
+        cost[:-1] += 0.5 * np.sum(np.diff(unknowns, axis=0) ** 2, axis=1)
         return cost
 
     def linearize(self, unknowns: Array) -> tuple[Array, Normal]:
         """The model, which is exact."""
         count, size = unknowns.shape
         normal = Normal.zero(count, size, count - 1)
-        pull = self.hold.weight * np.diff(unknowns, axis=0)
+        pull = np.diff(unknowns, axis=0)
         normal.gradient += unknowns - self.targets
         normal.gradient[:-1] -= pull
         normal.gradient[1:] += pull
-        block = self.hold.weight[..., None] * np.eye(size)
         normal.diagonal += np.eye(size)
-        normal.diagonal[:-1] += block
-        normal.diagonal[1:] += block
-        normal.coupling -= block
+        normal.diagonal[:-1] += np.eye(size)
+        normal.diagonal[1:] += np.eye(size)
+        normal.coupling -= np.eye(size)
         return self.cost(unknowns), normal
 
 

@@ -9,12 +9,13 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from cadpanel.solver import levenberg_marquardt as method
-from cadpanel.solver.levenberg_marquardt import Bounds, Stopping, levenberg_marquardt
+from cadpanel.solver.bounds import Bounds, bounded_step
+from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
 from tests.solver.models import (
-    HeldChain,
     LinearChain,
     Separate,
+    SpringChain,
     pattern,
     powell,
     powell_jacobian,
@@ -80,7 +81,7 @@ def test_the_cost_never_rises(seed):
 
 def test_a_linear_problem_of_coupled_blocks_is_solved_exactly():
     targets = np.random.default_rng(4).normal(size=(6, 3))
-    chain = HeldChain(targets, 1.0)
+    chain = SpringChain(targets)
     solution = levenberg_marquardt(chain, np.zeros((6, 3)), TIGHT)
     _, there = chain.linearize(solution.unknowns)
     assert there.gradient == pytest.approx(0.0, abs=1e-7)
@@ -288,13 +289,12 @@ def test_unknowns_are_blocked_on_a_bound_beyond_which_the_cost_would_fall_and_no
 def test_where_a_system_cannot_be_solved_it_is_damped_more_and_more(monkeypatch):
     """As where rounding leaves a matrix that is not positive definite: by 2, then 4, then 8 times."""
     dampings = []
-    solve = method._step
 
     def step(pattern, normal, scale, unknowns, bounds):
         dampings.append(float(scale.max()))
-        return (None, None, None) if len(dampings) <= 3 else solve(pattern, normal, scale, unknowns, bounds)
+        return None if len(dampings) <= 3 else bounded_step(pattern, normal, scale, unknowns, bounds)
 
-    monkeypatch.setattr(method, "_step", step)
+    monkeypatch.setattr(method, "bounded_step", step)
     start = np.array([[-1.2, 1.0]])
     solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
     assert np.array(dampings[1:4]) / dampings[:3] == pytest.approx([2.0, 4.0, 8.0])

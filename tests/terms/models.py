@@ -59,7 +59,7 @@ class Together:
                 weighted = part.roots * part.distances(state, held=True)[0]
                 found += [weighted[group.panels].reshape(-1) for group in state.layout.groups]
             if isinstance(part, HELD):
-                found.append((part.hold.roots()[..., None] * part.vectors(state)).reshape(-1))
+                found.append((np.sqrt(part.hold.weight)[..., None] * part.vectors(state)).reshape(-1))
         return np.concatenate(found)
 
     def rows(self, state: State) -> list[Rows]:

@@ -3,28 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.balance import AIM, FINISH, MARGIN, balanced, seam_terms
+from cadpanel.fitting.methods.holding import MARGIN, held_within, seam_terms
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
-from cadpanel.fitting.objective import Objective
+from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
+from cadpanel.terms.arc_gap import ArcGap
+from cadpanel.terms.limits.corner_drift import DriftTerm
 from cadpanel.terms.term import HeldTerm
 
-# How often seams are tightened, and up to which excess that is worth trying. Arcs are held by their distances from the
-# other arc's cone and cut plane; on gently curved panels these meet at a small angle once the cut leans far, and what
-# is within the tolerance of both may be ten times as far from where they meet.
+# Before tolerances count, gaps and drifts weigh this much against the mean squared deviation: local fits of panels with
+# several bends scatter their corners by decimetres, and a few steps of a smooth problem gather them.
+_FIRST_GAP, _FIRST_DRIFT = 0.1, 1e-2
+_FIRST = Stopping(cost=1e-3, iterations=40)
+# Between the points that are held, arcs part a little further: they are held at this share of the tolerance.
+_ARC_SHARE = 0.82
+# How often seams are tightened where they part still further, up to which excess that is worth trying, and to which
+# share of the tolerance.
 _TIGHTENINGS = 8
 _NEARLY = 20.0
+_AIM = 0.99
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,26 +61,52 @@ def _hold_seams(
     problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
 ) -> Fitted:
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
-    held: list[HeldTerm] = [*gaps, *problem.limits(settings, MARGIN)]
-    model = Objective(problem, [problem.deviation, *held], coupled=True)
-    found = balanced(problem, model, held, start, local=local, progress=progress)
-    iterations = found.iterations
-    # Between the points that are held the curves may still part a little further: measure, tighten there, go on.
+    limits = problem.limits(settings, MARGIN)
+    gathered, iterations = _gather(problem, gaps, limits, start)
+    state = problem.state(gathered)
+    for gap in gaps:
+        gap.hold.weight[:] = 0.0
+        if isinstance(gap, ArcGap):
+            gap.straighten(state)
+            gap.hold.radius = _ARC_SHARE * gap.hold.radius
+    model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
+    found = held_within(problem, model, gathered, local=local, tell=progress)
+    iterations += found.iterations
+    stopped = found.stopped
+    # Measure whole seams, tighten those that are too wide, go on.
     for tightening in range(_TIGHTENINGS + 1):
+        if stopped not in (Stop.HELD, Stop.STEP_LIMIT):
+            break
         seam_gap, _ = along_seams(panel_shapes(problem, found.unknowns), problem.met)
         excess = seam_gap / settings.gap_tolerance
         if excess.max(initial=0.0) <= 1.0:
             break
         if tightening == _TIGHTENINGS or not excess.max() < _NEARLY:
-            if found.stopped is Stop.HELD:
-                found = replace(found, stopped=Stop.OPEN_BETWEEN)
+            stopped = Stop.OPEN_BETWEEN
             break
-        share = np.where(excess > 1.0, AIM / excess, 1.0)
+        share = np.where(excess > 1.0, _AIM / excess, 1.0)
         for gap in gaps:
+            if isinstance(gap, ArcGap):
+                gap.straighten(problem.state(found.unknowns))
             gap.hold.tighten(share[gap.seams.index])
-        found = balanced(problem, model, held, found.unknowns, local=local, progress=progress, schedule=FINISH)
+        found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
         iterations += found.iterations
-    return replace(found, iterations=iterations)
+        stopped = found.stopped
+    return Fitted(found.unknowns, iterations, stopped)
+
+
+def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
+    """A few steps towards closed seams, and how many."""
+    firm = [(limit, limit.hold.weight) for limit in limits if isinstance(limit, DriftTerm)]
+    for gap in gaps:
+        gap.hold.weight[:] = _FIRST_GAP
+    for limit, _ in firm:
+        limit.hold.weight = np.full_like(limit.hold.weight, _FIRST_DRIFT)
+    model = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
+    solution = levenberg_marquardt(model, start, _FIRST)
+    for limit, weight in firm:
+        limit.hold.weight = weight
+    return solution.unknowns, solution.iterations
 
 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:

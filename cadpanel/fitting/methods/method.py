@@ -11,8 +11,8 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.stop import Stop
 
-# Told the round and the largest excess over a tolerance while a method runs.
-Progress = Callable[[int, float], None]
+# Told the step, the largest excess over a tolerance and the RMS deviation in mm; whether to go on.
+Progress = Callable[[int, float, float], bool]
 
 
 @dataclass(frozen=True, slots=True)

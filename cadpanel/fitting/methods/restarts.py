@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.methods.method import Fitted
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.solver.stop import Stop
 
 # Restarts shake the unknowns by this much (lengths in panel lengths, angles in radians); two ends agree within a share.
 _SHAKE = 0.02
@@ -29,7 +30,8 @@ def best_of_starts(
     """
     random = np.random.default_rng(settings.seed)
     ends = [solve(local)]
-    ends += [solve(local + _SHAKE * random.standard_normal(local.shape)) for _ in range(settings.restarts)]
+    while len(ends) <= settings.restarts and ends[-1].stopped is not Stop.TOLD:
+        ends.append(solve(local + _SHAKE * random.standard_normal(local.shape)))
     scores = np.array([score(end.unknowns) for end in ends])
     best = int(scores.argmin())
     agreed = int(np.sum(scores <= scores[best] * (1.0 + _AGREE)))

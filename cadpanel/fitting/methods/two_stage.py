@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.methods.balance import MARGIN, balanced
+from cadpanel.fitting.methods.holding import MARGIN, held_within
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
-from cadpanel.fitting.objective import Frozen, Objective
+from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.solver.stop import Stop
@@ -32,9 +32,9 @@ class TwoStage(Method):
         gaps = problem.corner_gaps(settings.gap_tolerance)
         for gap in gaps:
             gap.hold.weight[:] = weights.gap / weights.deviation
-        limits = problem.limits(settings, MARGIN)
-        everything = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
-        model = Frozen(everything, problem.placement_unknowns())
-        found = balanced(problem, model, limits, local, local=local, progress=progress)
+        moving = problem.placement_unknowns()
+        model = HeldObjective(problem, [problem.deviation, *gaps], problem.limits(settings, MARGIN), moving=moving)
+        found = held_within(problem, model, local, local=local, costly=False, tell=progress)
         # Gaps are weighed, not held: that the limits hold says nothing of them.
-        return replace(found, stopped=Stop.AT_REST) if found.stopped is Stop.HELD else found
+        stopped = Stop.AT_REST if found.stopped is Stop.HELD else found.stopped
+        return Fitted(found.unknowns, found.iterations, stopped)

@@ -7,23 +7,20 @@ two directions therefore have limits of their own. Without them the gap can be g
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.solver.tolerance_weights import Hold
+from cadpanel.solver.hold import Hold
 from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
 from cadpanel.terms.outline import Outline
-from cadpanel.terms.rows import Rows, add_rows
 from cadpanel.terms.state import State, slopes
 from cadpanel.terms.term import HeldTerm
 
-if TYPE_CHECKING:
-    from cadpanel.solver.blocks import Normal  # SciPy takes its time, and settings ask limits for their ranges
-
 # Weight of a squared drift against the mean squared deviation: 100 mm of drift count like 1 mm of deviation.
 LEAST_PULL = 1e-4
+# Corners slide far along their seams on the way to a solution: damped as gaps are, they would only crawl.
+_TIES = 1e-3
 
 
 class CornerDrift(Limit):
@@ -94,7 +91,7 @@ def _lengths(panels: Panels, allowed: Mapping[str, float], margin: float, name: 
     return np.asarray((1.0 - margin) * allowed[name] * panels.lengths)
 
 
-class DriftTerm:
+class DriftTerm(HeldTerm):
     """Holds the drift of corners within a limit: of all corners along the strip, or of outer ones across free edges.
 
     Even where the limit is far away a weak pull towards the reference's corners stays: what neither deviation nor gaps
@@ -107,7 +104,8 @@ class DriftTerm:
         self.limited = outline.across if across else outline.along
         self._rows = np.arange(len(limit))[:, None]
         held = self.limited.corners.shape[1]
-        self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, least=LEAST_PULL)
+        self.blocks, self.pair, self.panels = (np.arange(len(limit)),), None, len(limit)
+        self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, ties=_TIES)
 
     def vectors(self, state: State) -> Array:
         """(panels, L, d) the part of the corners' drift that is limited."""
@@ -115,22 +113,7 @@ class DriftTerm:
         part: Array = (self.limited.part @ drift[..., None])[..., 0]
         return part
 
-    def cost(self, state: State) -> Array:
-        """See `Term.cost`."""
-        residual = self.hold.roots()[..., None] * self.vectors(state)
-        cost: Array = 0.5 * np.einsum("pqx,pqx->p", residual, residual)
-        return cost
-
-    def rows(self, state: State) -> list[Rows]:
-        """See `Term.rows`."""
-        roots = self.hold.roots()[..., None]
-        residual = roots * self.vectors(state)
-        panels, corners, size = residual.shape
-        weighted = roots[..., None] * self.limited.part
-        jacobian = weighted @ slopes(state.corners)[self._rows, self.limited.corners]
-        jacobian = jacobian.reshape(panels, corners * size, jacobian.shape[-1])
-        return [Rows(residual.reshape(panels, -1), (np.arange(panels),), (jacobian,))]
-
-    def add_to(self, normal: Normal, state: State) -> Array:
-        """See `Term.add_to`."""
-        return add_rows(self.rows(state), normal, len(self._rows))
+    def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
+        """See `HeldTerm.linear`."""
+        moved = slopes(state.corners)[self._rows, self.limited.corners]
+        return self.vectors(state), (self.limited.part @ moved,)

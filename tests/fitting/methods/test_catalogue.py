@@ -50,7 +50,7 @@ def test_a_method_of_ones_own_is_used_under_its_name(monkeypatch):
         def fit(self, problem, starts, settings, progress=None):
             del settings
             assert progress is not None
-            progress(1, 0.5)
+            progress(1, 0.5, 7.5)
             told.append(len(starts))
             moved = starts[0].copy()
             moved[:, 1] += 3.0 / problem.place.length
@@ -60,7 +60,7 @@ def test_a_method_of_ones_own_is_used_under_its_name(monkeypatch):
     rounds = []
     result = fit(alone(folded_panel()), progress=lambda *args: rounds.append(args))
     assert told == [1]
-    assert rounds == [("concurrent", 1, 0.5)]
+    assert rounds == [("concurrent", 1, 0.5, 7.5)]
     assert (result.iterations, result.stopped) == (7, Stop.STALLED)
     assert result.measures.max_deviation == pytest.approx([3.0], abs=1e-3)
     assert result.local.max_deviation == pytest.approx([0.0], abs=1e-6)

@@ -1,0 +1,58 @@
+"""The smallest deviation at which seams, drifts and what the shop can make keep to their limits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.fitting.methods.method import Progress
+from cadpanel.fitting.objective import HeldObjective
+from cadpanel.fitting.problem import Problem, SeamTerm
+from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
+from cadpanel.solver.interior_point import Ended, Limits
+
+# Gaps and drifts are held a little inside what the user allows, so that rounding in a file cannot break the promise.
+MARGIN = 1e-3
+# No gap is closed at an RMS deviation beyond this multiple of the local fits', or this share of a panel's length where
+# the local fits are nearly exact: what comes then is no approximation of the reference any more.
+_MOST_MULTIPLE = 5.0
+_MOST_SHARE = 0.05
+# A panel that deviates by no more than this share of its length, RMS, is exact.
+_EXACT = 1e-8
+
+
+def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
+    """Everything that holds seams within `tolerance` mm."""
+    return [*problem.corner_gaps(tolerance), *problem.curve_gaps(tolerance)]
+
+
+def held_within(
+    problem: Problem,
+    model: HeldObjective,
+    start: Array,
+    *,
+    local: Array,
+    after: Ended | None = None,
+    tell: Progress | None = None,
+    costly: bool = True,
+) -> HeldSolution:
+    """Hold every held term within its tolerance, at the smallest deviation.
+
+    Args:
+        problem: the panels.
+        model: what is to be small, and what is held.
+        start: (panels, size) unknowns to begin from.
+        local: (panels, size) the local fits; no result may deviate beyond a multiple of theirs.
+        after: an end with slightly other tolerances to go on from.
+        costly: whether a deviation may be too large for any tolerance; not where only what panels must keep to is held.
+        tell: told the step, the largest excess over a tolerance, and the RMS deviation in mm; whether to go on.
+    """
+    best_alone = float(problem.deviation.cost(problem.state(local)).sum())
+    most = np.inf if not costly else max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)
+    exact = 0.5 * problem.panels * _EXACT**2
+
+    def told(step: int, excess: float, cost: float) -> bool:
+        return tell is None or tell(step, excess, float(np.sqrt(2.0 * cost / problem.panels)) * problem.place.length)
+
+    begin = model.starting_from(start)
+    return hold_or_give_way(model, begin, Limits(least_cost=exact), most_cost=most, after=after, tell=told)

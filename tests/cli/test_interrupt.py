@@ -1,0 +1,48 @@
+"""The first Ctrl-C ends what can end early, the second the program."""
+
+import signal
+import threading
+
+import pytest
+
+from cadpanel.cli.interrupt import first_interrupt_ends
+
+
+def test_once_somebody_listens_the_first_interrupt_is_heard_and_the_second_stops():
+    with first_interrupt_ends() as interrupt:
+        assert not interrupt.heard()
+        signal.raise_signal(signal.SIGINT)
+        assert interrupt.heard()
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_before_anybody_listens_an_interrupt_stops_at_once():
+    with first_interrupt_ends(), pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
+def test_who_takes_interrupts_otherwise_goes_on_doing_so():
+    heard = []
+    before = signal.signal(signal.SIGINT, lambda *_: heard.append(1))
+    try:
+        with first_interrupt_ends() as interrupt:
+            interrupt.heard()
+            signal.raise_signal(signal.SIGINT)
+        assert (heard, interrupt.heard()) == ([1], False)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_beside_the_main_thread_nothing_is_changed():
+    def run():
+        with first_interrupt_ends() as interrupt:
+            heard.append(interrupt.heard())
+
+    heard: list[bool] = []
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join()
+    assert heard == [False]

@@ -1,0 +1,123 @@
+"""What held vectors add to a step: the slope and curvature of their penalties."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cadpanel.solver.barrier import Barrier
+from cadpanel.solver.blocks import Normal
+from cadpanel.solver.central_path import central_weight
+from cadpanel.solver.hold import Hold
+from tests.solver.models import HeldBatch
+
+few = settings(max_examples=15)
+seeds = st.integers(0, 2**32 - 1)
+MU, MOST = 0.05, 7.0
+
+
+def case(seed: int, *, one_sided: bool = False, weight: float = 0.3) -> tuple[Barrier, HeldBatch, np.ndarray]:
+    """A barrier of vectors between three points, on its central path there."""
+    random = np.random.default_rng(seed)
+    size = 1 if one_sided else 3
+    hold = Hold(random.uniform(0.5, 2.0, (2, 2)), weight=weight, one_sided=one_sided, gives_way=True)
+    first = np.arange(2)
+    batch = HeldBatch(hold, random.normal(size=(2, 2, size)), (first, first + 1), first)
+    at = random.normal(size=(3, size))
+    barrier = Barrier(batch, most=MOST, ease=1.0)
+    barrier.weight = central_weight(barrier.numbers(batch.vectors(at)), MU, barrier.most)
+    return barrier, batch, at
+
+
+@few
+@given(seed=seeds, one_sided=st.booleans())
+def test_on_the_central_path_the_gradient_is_the_slope_of_the_penalties(seed, one_sided):
+    barrier, batch, at = case(seed, one_sided=one_sided)
+    normal = Normal.zero(3, at.shape[1], 2)
+    barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    numeric = np.zeros_like(at)
+    for k in np.ndindex(at.shape):
+        step = np.zeros_like(at)
+        step[k] = 1e-6
+        ahead, behind = (barrier.cost(batch.vectors(at + side * step), MU).sum() for side in (1.0, -1.0))
+        numeric[k] = (ahead - behind) / 2e-6
+    assert normal.gradient == pytest.approx(numeric, rel=1e-5, abs=1e-7)
+
+
+@few
+@given(seed=seeds)
+def test_the_matrix_is_that_of_the_penalties_where_vectors_follow_unknowns_evenly(seed):
+    """Then nothing is left out: Newton's own matrix."""
+    barrier, batch, at = case(seed)
+    normal = Normal.zero(3, 3, 2)
+    barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    along = np.random.default_rng(seed + 1).normal(size=at.shape)
+
+    def slope(where: np.ndarray) -> np.ndarray:
+        there = Normal.zero(3, 3, 2)
+        barrier.weight = central_weight(barrier.numbers(batch.vectors(where)), MU, barrier.most)
+        barrier.add_to(there, batch.vectors(where), batch.jacobians(), MU, np.zeros(3))
+        return there.gradient
+
+    numeric = (slope(at + 1e-6 * along) - slope(at - 1e-6 * along)) / 2e-6
+    product = np.einsum("bij,bj->bi", normal.diagonal, along)
+    for pair in range(2):
+        product[pair] += normal.coupling[pair] @ along[pair + 1]
+        product[pair + 1] += normal.coupling[pair].T @ along[pair]
+    assert product == pytest.approx(numeric, rel=1e-4, abs=1e-6)
+
+
+@few
+@given(seed=seeds)
+def test_a_bend_is_the_gradient_of_rows_whose_vectors_are_off(seed):
+    barrier, batch, at = case(seed, weight=0.0)
+    normal = Normal.zero(3, 3, 2)
+    work = barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    move = np.random.default_rng(seed + 2).normal(size=at.shape)
+    gradient = np.zeros_like(at)
+    barrier.bend(gradient, work, barrier.moved(batch.jacobians(), move))
+    product = np.einsum("bij,bj->bi", normal.diagonal, move)
+    for pair in range(2):
+        product[pair] += normal.coupling[pair] @ move[pair + 1]
+        product[pair + 1] += normal.coupling[pair].T @ move[pair]
+    assert gradient == pytest.approx(product, abs=1e-9)
+
+
+def test_distances_narrow_and_never_widen_and_the_pull_stays():
+    barrier, batch, at = case(4)
+    vectors = 9.0 * batch.vectors(at)
+    barrier.open(vectors, 0.0, 0.8, MU)
+    wide, pull = barrier.tau.copy(), barrier.weight / barrier.tau
+    assert np.all(wide >= 0.8 * np.linalg.norm(vectors, axis=-1) - 1e-12)
+    barrier.follow(0.5 * vectors, 0.0, 0.8)
+    assert np.all(barrier.tau < wide)
+    assert barrier.weight / barrier.tau == pytest.approx(pull)
+    narrow = barrier.tau.copy()
+    barrier.follow(20.0 * vectors, 0.0, 0.8)
+    assert np.array_equal(barrier.tau, narrow)
+    barrier.follow(0.0 * vectors, 0.0, 0.8)
+    assert np.array_equal(barrier.tau, batch.hold.radius)
+    assert barrier.lagging == 1.0
+
+
+def test_only_what_is_pressed_may_pull_harder():
+    barrier, batch, at = case(5)
+    vectors = batch.vectors(at)
+    vectors[0] = 3.0 * batch.hold.radius[0][:, None]
+    vectors[1] = 0.0
+    barrier.weight = np.full((2, 2), 0.9 * MOST)
+    barrier.raise_most(vectors, np.array([True, True]), 3.0)
+    assert np.array_equal(barrier.most, [[3.0 * MOST] * 2, [MOST] * 2])
+    barrier.raise_most(vectors, np.array([False, False]), 3.0)
+    assert np.array_equal(barrier.most, [[3.0 * MOST] * 2, [MOST] * 2])
+
+
+def test_multipliers_stay_between_nothing_and_the_greatest():
+    barrier, batch, at = case(6)
+    work = barrier.add_to(Normal.zero(3, 3, 2), batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    for size in (-1e9, 1e9):
+        barrier.renew(work, size * np.ones((2, 2, 3)) * work.u, np.array([True, True]))
+        assert np.all((barrier.weight > 0.0) & (barrier.weight < MOST))
+    before = barrier.weight.copy()
+    barrier.renew(work, np.ones((2, 2, 3)), np.array([False, False]))
+    assert np.array_equal(barrier.weight, before)

@@ -1,0 +1,71 @@
+"""Who gives way where not everything can be held, and by how much."""
+
+import numpy as np
+import pytest
+
+from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
+from cadpanel.solver.hold import Hold
+from cadpanel.solver.interior_point import Limits
+from cadpanel.solver.stop import Stop
+from tests.solver.models import HeldBatch, HeldTargets, held_points
+
+
+def between(first: float, second: float, **second_is: bool) -> HeldTargets:
+    """One point of the plane held to (-1, 0) and to (1, 0) at once, within these distances."""
+    centres = [np.array([[[side, 0.0]]]) for side in (-1.0, 1.0)]
+    holds = [
+        Hold(np.array([[first]]), weight=0.0, gives_way=True),
+        Hold(np.array([[second]]), weight=0.0, gives_way=second_is.get("gives_way", True)),
+    ]
+    batches = [HeldBatch(hold, centre, (np.arange(1),)) for hold, centre in zip(holds, centres, strict=True)]
+    return HeldTargets(np.zeros((1, 2)), batches)
+
+
+def solve(model: HeldTargets, **how) -> HeldSolution:
+    return hold_or_give_way(model, model.targets.copy(), Limits(), **how)
+
+
+def test_what_can_be_held_is_held():
+    found = solve(between(1.5, 1.5))
+    assert found.stopped is Stop.HELD
+    assert found.excess <= 1.0
+
+
+def test_what_cannot_be_held_is_exceeded_by_the_least_share():
+    found = solve(between(0.5, 0.5))
+    assert found.stopped is Stop.STALLED
+    # In the middle both vectors have the length 1, twice what is asked for.
+    assert found.excess == pytest.approx(2.0, rel=0.1)
+    assert found.unknowns == pytest.approx(np.zeros((1, 2)), abs=0.1)
+
+
+def test_what_must_not_give_way_holds_and_the_other_gives_way():
+    found = solve(between(0.5, 0.5, gives_way=False))
+    assert found.unknowns[0, 0] >= 0.5 - 1e-6
+    assert found.excess == pytest.approx(3.0, rel=0.1)
+    assert found.unknowns[0, 0] == pytest.approx(0.5, abs=0.1)
+
+
+def test_no_distance_is_worth_more_than_the_most_cost():
+    targets, far = np.array([[3.0, 0.0]]), np.zeros((1, 2))
+    found = solve(held_points(targets, far, np.array([1.0])), most_cost=0.5)
+    assert found.stopped is Stop.TOO_COSTLY
+    # Half the square of the way is the cost: a way of 1 at the most, to 2 of 1.
+    assert 2.0 <= found.excess <= 2.3
+
+
+def test_what_is_told_to_stop_says_so_and_keeps_what_must_hold():
+    model = between(0.9, 0.5, gives_way=False)
+    found = solve(model, tell=lambda *_: False)
+    assert found.stopped is Stop.TOLD
+    assert np.linalg.norm(found.unknowns[0] - np.array([1.0, 0.0])) <= 0.5 + 1e-6
+
+
+def test_steps_of_every_try_are_counted():
+    told = []
+
+    def tell(*args):
+        told.append(args)
+        return True
+
+    assert solve(between(0.5, 0.5), tell=tell).iterations == len(told)

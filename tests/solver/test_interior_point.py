@@ -1,0 +1,160 @@
+"""Vectors held within distances: problems whose constrained optimum is known."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import NonlinearConstraint, minimize
+
+from cadpanel.arrays import Array
+from cadpanel.solver.bounds import Bounds
+from cadpanel.solver.hold import Hold
+from cadpanel.solver.interior_point import Limits, interior_point
+from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
+
+few = settings(max_examples=10)
+seeds = st.integers(0, 2**32 - 1)
+# What the barrier leaves, as a share of the cost.
+LEFT = 1e-2
+
+
+@few
+@given(seed=seeds)
+def test_held_points_end_at_their_projections_onto_the_balls(seed):
+    random = np.random.default_rng(seed)
+    targets, centres = random.normal(size=(2, 6, 3))
+    radius = random.uniform(0.05, 1.0, 6)
+    model = held_points(targets, centres, radius)
+    end = interior_point(model, targets.copy(), Limits())
+    out = targets - centres
+    length = np.linalg.norm(out, axis=1)
+    expected = centres + out * np.minimum(1.0, radius / length)[:, None]
+    assert end.settled
+    assert end.best.excess <= 1.0 + 1e-9
+    assert model.free_cost(end.best.unknowns) == pytest.approx(model.free_cost(expected), rel=LEFT, abs=1e-9)
+
+
+@few
+@given(seed=seeds)
+def test_multipliers_are_the_weights_that_hold_the_vectors(seed):
+    """Karush, Kuhn, Tucker: where a vector touches its distance, target - x = weight (x - centre)."""
+    random = np.random.default_rng(seed)
+    centre, way = random.normal(size=(2, 1, 2))
+    end = interior_point(held_points(centre + way, centre, 0.5 * np.linalg.norm(way, axis=1)), centre + way, Limits())
+    # Halfway to the target the pull of the target and that of the centre are equal; the barrier leaves a part of it.
+    assert end.multipliers[0] == pytest.approx(1.0, rel=0.2)
+
+
+def test_a_distance_that_does_not_bind_needs_no_multiplier():
+    targets = np.array([[1.0, 0.0], [3.0, 0.0]])
+    end = interior_point(held_points(targets, np.zeros((2, 2)), np.array([2.0, 2.0])), targets.copy(), Limits())
+    assert end.multipliers[0][0, 0] < 5e-3
+    assert end.multipliers[0][1, 0] == pytest.approx(0.5, rel=0.01)
+
+
+@few
+@given(seed=seeds, radius=st.sampled_from([0.02, 0.2, 0.8]))
+def test_a_held_chain_reaches_the_constrained_minimum(seed, radius):
+    targets = np.random.default_rng(seed).normal(size=(4, 2))
+    model = held_chain(targets, radius)
+    end = interior_point(model, targets.copy(), Limits())
+
+    def cost(x: Array) -> float:
+        return model.free_cost(x.reshape(4, 2))
+
+    limits = NonlinearConstraint(lambda x: np.sum(np.diff(x.reshape(4, 2), axis=0) ** 2, axis=1), -np.inf, radius**2)
+    exact: Any = minimize(cost, np.tile(targets.mean(axis=0), 4), constraints=limits, method="SLSQP")
+    assert exact.success
+    assert model.free_cost(end.best.unknowns) == pytest.approx(exact.fun, rel=LEFT)
+
+
+@few
+@given(seed=seeds, unit=st.sampled_from([1e-3, 1.0, 1e3]))
+def test_the_unit_of_lengths_does_not_matter(seed, unit):
+    targets = np.random.default_rng(seed).normal(size=(5, 2))
+    # Steps have about a length of their own in radians and panel lengths, so the way may differ, the end not.
+    ends = [held_chain(size * targets, 0.3 * size) for size in (1.0, unit)]
+    costs = [m.free_cost(interior_point(m, m.targets.copy(), Limits()).best.unknowns) for m in ends]
+    assert costs[1] / unit**2 == pytest.approx(costs[0], rel=2.0 * LEFT)
+
+
+def numbers_below(most: float) -> HeldTargets:
+    """A point at 3 on a line that may be at `most` at the most."""
+    hold = Hold(np.array([[most]]), weight=0.0, one_sided=True, scale=np.ones((1, 1)))
+    return HeldTargets(np.array([[3.0]]), [HeldBatch(hold, np.zeros((1, 1, 1)), (np.arange(1),))])
+
+
+def test_a_number_stays_below_what_it_may_reach_and_as_far_below_as_it_likes():
+    held = interior_point(numbers_below(2.0), np.zeros((1, 1)), Limits())
+    assert held.best.unknowns[0, 0] == pytest.approx(2.0, abs=0.01)
+    assert held.best.firm <= 1.0 + 1e-9
+    free = numbers_below(2.0)
+    free.targets = np.array([[-50.0]])
+    assert interior_point(free, np.zeros((1, 1)), Limits()).best.unknowns[0, 0] == pytest.approx(-50.0, rel=1e-3)
+
+
+def test_unknowns_keep_to_their_bounds():
+    model = held_chain(np.array([[0.0, 0.0], [2.0, 1.0]]), 0.5)
+    model.bounds = Bounds(np.array([[0.0, 0.0], [-9.0, -9.0]]), np.array([[0.0, 0.0], [9.0, 9.0]]))
+    end = interior_point(model, np.array([[0.0, 0.0], [2.0, 1.0]]), Limits())
+    assert np.all(end.best.unknowns[0] == 0.0)
+    assert end.best.unknowns[1] == pytest.approx(0.5 * np.array([2.0, 1.0]) / np.sqrt(5.0), rel=1e-2)
+
+
+def test_every_step_is_told_and_anybody_may_end_it():
+    model = held_chain(np.random.default_rng(1).normal(size=(6, 2)), 0.1)
+    told: list[tuple[int, float, float]] = []
+
+    def tell(*args):
+        told.append(args)
+        return len(told) < 3
+
+    end = interior_point(model, model.targets.copy(), Limits(), tell=tell)
+    assert end.told_to_stop
+    assert not end.settled
+    assert [step for step, _, _ in told] == [1, 2, 3]
+    assert told[-1][2] == model.free_cost(end.point.unknowns)
+
+
+def test_going_on_with_its_multipliers_takes_fewer_steps():
+    targets = np.random.default_rng(3).normal(size=(30, 3))
+    model = held_chain(targets, 0.1)
+    first = interior_point(model, targets.copy(), Limits())
+    narrower = held_chain(targets, 0.099)
+    cold = interior_point(narrower, targets.copy(), Limits())
+    warm = interior_point(narrower, first.best.unknowns, Limits(), after=first)
+    assert warm.settled
+    assert warm.steps < cold.steps
+    assert narrower.free_cost(warm.best.unknowns) == pytest.approx(narrower.free_cost(cold.best.unknowns), rel=LEFT)
+
+
+def test_wider_distances_are_those_of_what_gives_way_alone():
+    targets = np.array([[3.0, 0.0], [0.0, 3.0]])
+    for gives_way, reached in ((True, 2.0), (False, 1.0)):
+        model = held_points(targets, np.zeros((2, 2)), np.ones(2), gives_way=gives_way)
+        end = interior_point(model, targets.copy(), Limits(), ease=2.0)
+        assert np.linalg.norm(end.best.unknowns, axis=1) == pytest.approx(reached, rel=1e-2)
+
+
+def test_components_do_not_hold_each_other_up():
+    """One chain that bends far, beside many straight ones: each ends where it ends alone."""
+    random = np.random.default_rng(5)
+    hard, easy = 5.0 * random.normal(size=(4, 2)), 0.1 * random.normal(size=(4, 2))
+    both = held_chain(np.concatenate([hard, easy]), 0.5)
+    apart = [k for k in range(7) if k != 3]
+    batch = both.held[0]
+    held = HeldBatch(
+        Hold(batch.hold.radius[apart], weight=0.0, gives_way=True),
+        batch.offset[apart],
+        tuple(block[apart] for block in batch.blocks),
+        np.arange(6),
+    )
+    together = HeldTargets(both.targets, [held], [(k, k + 1) for k in apart])
+    assert together.pattern.components == 2
+    end = interior_point(together, together.targets.copy(), Limits())
+    alone = interior_point(held_chain(hard, 0.5), hard.copy(), Limits())
+    assert end.best.excess <= 1.0 + 1e-9
+    assert end.best.unknowns[4:] == pytest.approx(easy, abs=0.2)
+    assert end.best.cost == pytest.approx(alone.best.cost, rel=LEFT)

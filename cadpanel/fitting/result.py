@@ -36,6 +36,8 @@ class FitResult:
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
+        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order (within a
+            few tenths of itself); None where no gap is held.
         seconds: time of the fit, without the baselines.
     """
 
@@ -49,6 +51,7 @@ class FitResult:
     agreed: int
     iterations: int
     stopped: Stop
+    gap_price: float | None
     seconds: float
 
     @property

@@ -130,6 +130,7 @@ def _fit(
         agreed=chosen.agreed,
         iterations=chosen.iterations,
         stopped=chosen.stopped,
+        gap_price=chosen.gap_price,
         seconds=time.perf_counter() - began,
     )
 

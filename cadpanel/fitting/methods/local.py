@@ -22,7 +22,7 @@ _LOCAL_ITERATIONS = 400
 # Steps after which those panels that have not settled go on by themselves.
 _MOST_SETTLE_BY = 40
 # A panel has settled where this share of its cost is left to gain: two cones that are nearly one creep on for hundreds
-# of steps to gain a ten-thousandth of their deviation. Samples of a panel that its feature can be are met exactly still.
+# of steps to gain a ten-thousandth of their deviation. Samples of what a feature can be exactly are still met exactly.
 _SETTLED = 1e-6
 # A local fit further off than this share of the panel's length is no fit, and normals further off are no skin.
 _HOPELESS_DEVIATION = 0.05

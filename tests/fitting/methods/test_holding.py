@@ -1,5 +1,7 @@
 """What a millimetre of gap costs, and that who holds a narrow gap holds a wide one."""
 
+from itertools import pairwise
+
 import pytest
 
 import cadpanel as cp
@@ -32,5 +34,5 @@ def test_what_holds_a_narrow_gap_holds_a_wide_one_at_no_more_deviation(twist):
     met = [result.tolerance_met for result in results]
     assert met == sorted(met)
     rms = [result.measures.overall_rms for result in results]
-    for narrow, wide in zip(rms, rms[1:], strict=False):
+    for narrow, wide in pairwise(rms):
         assert wide <= 1.01 * narrow

@@ -32,7 +32,7 @@ def models() -> dict[str, HeldTargets]:
     torn = held_chain(np.array([[-3.0, 0.0], [0.0, 1.0], [3.0, 0.0]]), 0.5)
     ends = Hold(np.array([[0.5], [0.5]]), weight=0.1)
     torn.held += (HeldBatch(ends, np.array([[[-3.0, 0.0]], [[3.0, 0.0]]]), (np.array([0, 2]),)),)
-    below = Hold(np.full((12, 1), 0.2), weight=1.0, one_sided=True, scale=np.ones((12, 1)))
+    below = Hold(np.full((12, 1), 0.2), weight=1.0, one_sided=True, scale=np.full((12, 1), 2.0))
     level = held_chain(random.normal(size=(12, 1)), 0.3)
     level.held += (HeldBatch(below, np.zeros((12, 1, 1)), (np.arange(12),)),)
     return {"a chain": chain, "points alone": points, "a chain too short": torn, "a chain below a level": level}

@@ -137,3 +137,17 @@ def test_damping_ties_vectors_to_where_they_are(ties):
         np.array([0.0, -2.0 * 3.0 * ties])[:, None, None] * np.eye(3), abs=1e-9
     )
     assert damped.gradient == pytest.approx(free.gradient)
+
+
+def test_who_goes_on_with_narrower_distances_pulls_as_hard():
+    before, batch, at = case(8)
+    before.open(batch.vectors(at), 0.0, 0.8, MU)
+    batch.hold.radius = 0.4 * batch.hold.radius
+    after = Barrier(batch, most=1.0, ease=1.0)
+    after.resume(before)
+    assert after.weight / after.tau == pytest.approx(before.weight / before.tau)
+    assert np.array_equal(after.most, before.most)
+    numbers, batch, at = case(9, one_sided=True)
+    after = Barrier(batch, most=1.0, ease=1.0)
+    after.resume(numbers)
+    assert np.array_equal(after.weight, numbers.weight)

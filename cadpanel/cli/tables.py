@@ -89,7 +89,7 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
         out.print(Text(bends))
     price = report.solve.gap_price
     if price is not None and price >= _WORTH_TELLING:
-        out.print(Text(f"Every mm more that gaps were allowed would save about {price:.2g} mm of RMS deviation."))
+        out.print(Text(f"A little more gap would save RMS deviation: at first about {price:.2g} mm a mm."))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]

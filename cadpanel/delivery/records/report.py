@@ -61,7 +61,7 @@ class SolveModel(Record):
         starts: how many starts were made.
         agreed: how many of them ended within 1 % of the best.
         gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
-            where no gap is held.
+            where no gap is held at its tolerance.
     """
 
     iterations: NonNegativeCount

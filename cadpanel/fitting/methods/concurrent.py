@@ -92,7 +92,8 @@ def _hold_seams(
         found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
         iterations += found.iterations
         stopped = found.stopped
-    price = gap_price(problem, model, found, settings.gap_tolerance)
+    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
+    price = gap_price(problem, model, found, settings.gap_tolerance) if stopped is Stop.HELD else None
     return Fitted(found.unknowns, iterations, stopped, gap_price=price)
 
 

@@ -26,7 +26,7 @@ class Fitted:
         agreed: how many of the starts, the first included, ended within 1 % of the best deviation and held.
         starts: how many starts were made.
         gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
-            where no gap is held.
+            where no gap is held at its tolerance.
     """
 
     unknowns: Array

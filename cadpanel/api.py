@@ -117,6 +117,8 @@ def fit(
         SettingsError: a setting is out of its range.
     """
     _require(reference, Reference, "what is fitted is a reference as read() gives it")
+    if time_limit is not None:
+        _require(time_limit, int | float, "a time limit is a number of seconds")
     if time_limit is not None and not time_limit > 0.0:
         raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
     return fit_reference(reference, _asked(settings, changes), progress, time_limit=time_limit)

@@ -16,6 +16,8 @@ from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
+# Deviation in mm that is worth a line of its own.
+_WORTH_TELLING = 0.05
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5
 DASH = "-"
@@ -85,6 +87,9 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     bends = _bends(report)
     if bends:
         out.print(Text(bends))
+    price = report.solve.gap_price
+    if price is not None and price >= _WORTH_TELLING:
+        out.print(Text(f"A little more gap would save RMS deviation: at first about {price:.2g} mm a mm."))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]

@@ -36,6 +36,9 @@ class FitResult:
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
+        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order: as long
+            as the change is small, and the panels stay near where they are; None where no gap is held at its
+            tolerance.
         seconds: time of the fit, without the baselines.
     """
 
@@ -49,6 +52,7 @@ class FitResult:
     agreed: int
     iterations: int
     stopped: Stop
+    gap_price: float | None
     seconds: float
 
     @property

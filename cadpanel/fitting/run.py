@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cadpanel.arrays import IntArray
+from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.feature_choice import Choice, can_be_built
@@ -47,11 +48,13 @@ def fit(
 
     Raises:
         PanelError: a panel's faces are nothing that the feature could approximate.
-        SettingsError: no starting values are known for the feature.
+        SettingsError: no starting values are known for the feature, or a time limit is given beside weights.
     """
     began = time.perf_counter()
     watch = _Watch(progress, None if time_limit is None else began + time_limit)
     how = settings or FitSettings()
+    if time_limit is not None and how.weights is not None:
+        raise SettingsError("a time limit ends the search for what holds tolerances; with weights there is none to end")
     if not how.automatic:
         features = [how.feature_for(len(panel.edges)) for panel in reference.panels]
         return _fit(reference, how, features, began, watch)
@@ -62,11 +65,11 @@ def fit(
     # The last result that can be built stands.
     buildable: FitResult | None = None
     promotions = replacements = 0
-    while not watch.over:
+    while True:
         lost = np.array([i for i, shape in enumerate(result.shapes) if not can_be_built(shape)], dtype=np.intp)
         if not len(lost):
             buildable = result
-            if result.tolerance_met or promotions == _PROMOTIONS:
+            if result.tolerance_met or promotions == _PROMOTIONS or watch.over:
                 break
             promotions += 1
             changed = choice.promote(_offenders(result))
@@ -95,7 +98,8 @@ class _Watch:
     def tell(self, method: str, step: int, excess: float, rms: float) -> bool:
         """Whether to go on."""
         if self._progress is not None:
-            self.over |= self._progress(method, step, excess, rms) is False
+            answer = self._progress(method, step, excess, rms)
+            self.over |= answer is not None and not answer
         self.over |= self._deadline is not None and time.perf_counter() > self._deadline
         return not self.over
 
@@ -130,6 +134,7 @@ def _fit(
         agreed=chosen.agreed,
         iterations=chosen.iterations,
         stopped=chosen.stopped,
+        gap_price=chosen.gap_price,
         seconds=time.perf_counter() - began,
     )
 

@@ -39,6 +39,15 @@ class Bounds:
         blocked: BoolArray = (at_lower & (gradient > 0.0)) | (at_upper & (gradient < 0.0)) | (at_lower & at_upper)
         return blocked
 
+    def beyond(self, unknowns: Array, step: Array) -> BoolArray:
+        """(count, size) which unknowns stand on a bound beyond which a step leads."""
+        beyond: BoolArray = ((unknowns <= self.lower) & (step < 0.0)) | ((unknowns >= self.upper) & (step > 0.0))
+        return beyond
+
+
+# How often unknowns are held because a step would push them beyond the bounds on which they stand.
+_TRIES = 4
+
 
 @dataclass(frozen=True, slots=True)
 class BoundedStep:
@@ -64,14 +73,20 @@ def bounded_step(
 ) -> BoundedStep | None:
     """The step of (J^T J + diag(damping)) s = -gradient within the bounds; None if that is not positive definite."""
     blocked = np.zeros(unknowns.shape, dtype=bool) if bounds is None else bounds.blocked(unknowns, normal.gradient)
-    if blocked.any():
-        free = normal.without(blocked, pattern.pairs)
+    factors, wanted = None, unknowns
+    for _ in range(_TRIES):
+        free = normal.without(blocked, pattern.pairs) if blocked.any() else normal
         factors = pattern.factorize(free, np.where(blocked, 0.0, damping))
-        wanted = None if factors is None else factors.solve(-free.gradient)
-    else:
-        factors = pattern.factorize(normal, damping)
-        wanted = None if factors is None else factors.solve(-normal.gradient)
-    if factors is None or wanted is None:
+        if factors is None:
+            return None
+        wanted = factors.solve(-free.gradient)
+        # Cut off at once, a step that leads beyond a bound on which it stands is no step of the model any more, however
+        # much it is damped: what it would push is held, too.
+        beyond = np.zeros_like(blocked) if bounds is None else bounds.beyond(unknowns, wanted)
+        if not beyond.any():
+            break
+        blocked = blocked | beyond
+    if factors is None:
         return None
     if bounds is None or (not blocked.any() and bounds.hold(unknowns + wanted)):
         # Of an unhindered step the damped model promises s . (damping s - gradient) / 2.

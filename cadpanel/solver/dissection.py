@@ -67,13 +67,13 @@ def _ordered(graph: csr_array, blocks: IntArray) -> list[IntArray]:
         if len(some) <= _LEAF:
             found.append(some)
             continue
-        first, between, second = _parted(graph[some][:, some])
+        first, between, second = parted(graph[some][:, some])
         found.append(some[between])
         halves += [some[half] for half in (first, second) if len(half)]
     return [group for group in reversed(found) if len(group)]
 
 
-def _parted(graph: csr_array) -> tuple[IntArray, IntArray, IntArray]:
+def parted(graph: csr_array) -> tuple[IntArray, IntArray, IntArray]:
     """Two halves of a graph and what is between them."""
     count, label = connected_components(graph, directed=False)
     if count > 1:
@@ -81,14 +81,19 @@ def _parted(graph: csr_array) -> tuple[IntArray, IntArray, IntArray]:
         chosen = np.cumsum(sizes) <= max(len(label) // 2, int(sizes[0]))
         return np.flatnonzero(chosen[label]), np.empty(0, dtype=np.intp), np.flatnonzero(~chosen[label])
     level = _levels(graph, int(_levels(graph, 0).argmax()))
-    sizes = np.bincount(level)
-    before = np.cumsum(sizes) - sizes
-    share = before / max(len(level), 1)
-    # The smallest level of those that leave a third on both sides, or else the middle one.
-    good = (share >= 1 / 3) & ((before + sizes) <= len(level) * (2 / 3))
-    middle = np.abs(before + 0.5 * sizes - 0.5 * len(level))
-    cut = int(np.lexsort((middle, np.where(good, sizes, len(level)), ~good))[0])
-    return np.flatnonzero(level < cut), np.flatnonzero(level == cut), np.flatnonzero(level > cut)
+    # Of a level only those blocks part that are coupled with the next one; the others go with what is before them.
+    row = np.repeat(np.arange(len(level)), np.diff(graph.indptr))
+    parting = np.zeros(len(level), dtype=bool)
+    parting[row[level[graph.indices] > level[row]]] = True
+    size = np.bincount(level[parting], minlength=level.max() + 1)
+    behind = np.cumsum(np.bincount(level))
+    before, after = behind - size, len(level) - behind
+    # The fewest blocks of those that leave a third on both sides, or else those in the middle.
+    good = 3 * np.minimum(before, after) >= len(level)
+    middle = np.abs(before - after)
+    cut = int(np.lexsort((middle, np.where(good, size, len(level)), ~good))[0])
+    between = parting & (level == cut)
+    return np.flatnonzero((level <= cut) & ~between), np.flatnonzero(between), np.flatnonzero(level > cut)
 
 
 def _levels(graph: csr_array, start: int) -> IntArray:

@@ -20,6 +20,8 @@ from cadpanel.solver.stop import Stop
 _CLOSE, _TRIES = 1.1, 16
 # Steps at most for one factor, from the last one that held; no more than this is gained by a single one.
 _STEPS, _MOST_NARROWED = 80, 1.7
+# Steps after it was told to end.
+_LAST_STEPS = 12
 # So wide that nothing which may give way is held at all.
 _FREE = 1e6
 # A result that exceeds its distances by less holds them: what is asked for is asked for with a margin.
@@ -70,15 +72,16 @@ def hold_or_give_way(
     if holds and cheap:
         why = Stop.HELD if first.settled else Stop.STEP_LIMIT
         return _solution(first, 1.0, first.steps, Stop.TOLD if first.told_to_stop else why)
-    if firm and first.told_to_stop:
-        return _solution(first, 1.0, first.steps, Stop.TOLD)
-    search = _Search(model, replace(limits, steps=_STEPS), None if first.told_to_stop else tell, first.steps)
+    if first.told_to_stop:
+        return _ended_early(model, start, limits, first)
+    search = _Search(model, replace(limits, steps=_STEPS), tell, first.steps)
     kept, ease = search.run(start, _FREE), _FREE
+    if kept.best.firm > _HOLDS and not search.stopped:  # from elsewhere it may be nearer
+        other = search.run(first.point.unknowns, _FREE)
+        kept = other if other.best.firm < kept.best.firm else kept
     if kept.best.firm > _HOLDS:  # what must hold cannot: whatever comes nearest
         nearer = first if best.firm <= kept.best.firm else kept
         return _solution(nearer, 1.0 if nearer is first else ease, search.steps, Stop.STALLED)
-    if first.told_to_stop:
-        return _solution(kept, ease, search.steps, Stop.TOLD)
     if firm and cheap and best.excess < kept.best.excess * ease:
         kept, ease = first, 1.0
     kept, ease = search.narrowed(kept, ease, most_cost)
@@ -86,6 +89,18 @@ def hold_or_give_way(
     if ease * max(kept.best.excess, kept.best.firm) <= _HOLDS:
         why = Stop.HELD
     return _solution(kept, ease, search.steps, Stop.TOLD if search.stopped else why)
+
+
+def _ended_early(model: HeldModel, start: Array, limits: Limits, first: Ended) -> HeldSolution:
+    """The best so far, after a few more steps that bring back what must not give way."""
+    search = _Search(model, replace(limits, steps=_LAST_STEPS), None, first.steps)
+    now = max(first.now.excess, 1.0)
+    ends = [(first, 1.0), (search.run(first.point.unknowns, now), now)]
+    if all(end.best.firm > _HOLDS for end, _ in ends):
+        search = _Search(model, replace(limits, steps=_STEPS), None, search.steps)
+        ends.append((search.run(start, _FREE), _FREE))
+    end, ease = min(ends, key=lambda one: (max(one[0].best.firm, _HOLDS), one[0].best.excess * one[1]))
+    return _solution(end, ease, search.steps, Stop.TOLD)
 
 
 def _solution(end: Ended, ease: float, steps: int, stopped: Stop) -> HeldSolution:

@@ -69,7 +69,7 @@ class Ended:
     """Where the steps ended.
 
     Attributes:
-        point: the last.
+        point, now: the last, and what it is worth.
         best: unknowns (count, size) of the best point: of those in which what must not give way holds the one that
             exceeds the other distances least, and of those that exceed none the one with the least cost.
         multipliers: for each batch (groups, vectors) the weight w of |v|^2 / 2 in the cost that holds the vector.
@@ -80,6 +80,7 @@ class Ended:
     """
 
     point: Point
+    now: Best
     best: Best
     multipliers: tuple[Array, ...]
     steps: int
@@ -182,9 +183,10 @@ class _Run:
             settled = self._step()
             if self.tell is not None:
                 now = self._worth(self.point)
-                stopped = not self.tell(steps, max(now.firm, now.excess), now.cost)
+                stopped = not self.tell(steps, max(now.firm, now.excess * self.ease), now.cost)
         return Ended(
             point=self.point,
+            now=self._worth(self.point),
             best=self.best,
             multipliers=tuple(barrier.weight / barrier.tau**2 for barrier in self.barriers),
             steps=steps,

@@ -11,7 +11,7 @@ class Stop(Enum):
     HELD = "everything that it holds keeps to its tolerance"
     AT_REST = "the cost no longer falls: more steps would change nothing, another start or method might"
     STEP_LIMIT = "its steps were used up before it came to rest: begin nearer, or ask for less"
-    STALLED = "what it holds comes no nearer to its tolerance, however much that weighs: allow wider tolerances"
+    STALLED = "what it holds came no nearer to its tolerance"
     TOO_COSTLY = (
         "no approximation would be left if the tolerances were held: allow wider ones, or a model that follows better"
     )

@@ -121,3 +121,33 @@ def test_multipliers_stay_between_nothing_and_the_greatest():
     before = barrier.weight.copy()
     barrier.renew(work, np.ones((2, 2, 3)), np.array([False, False]))
     assert np.array_equal(barrier.weight, before)
+
+
+@pytest.mark.parametrize("ties", [1.0, 0.25])
+def test_damping_ties_vectors_to_where_they_are(ties):
+    """Each block by its own, in the metric of the vectors, and as heavily as they are to be tied."""
+    barrier, batch, at = case(7)
+    batch.hold.ties = ties
+    damping = np.array([0.0, 3.0, 5.0])
+    free, damped = Normal.zero(3, 3, 2), Normal.zero(3, 3, 2)
+    barrier.add_to(free, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    barrier.add_to(damped, batch.vectors(at), batch.jacobians(), MU, damping)
+    # Two vectors a group, each the difference of two points; a group is damped as its first block is.
+    assert damped.coupling - free.coupling == pytest.approx(
+        np.array([0.0, -2.0 * 3.0 * ties])[:, None, None] * np.eye(3), abs=1e-9
+    )
+    assert damped.gradient == pytest.approx(free.gradient)
+
+
+def test_who_goes_on_with_narrower_distances_pulls_as_hard():
+    before, batch, at = case(8)
+    before.open(batch.vectors(at), 0.0, 0.8, MU)
+    batch.hold.radius = 0.4 * batch.hold.radius
+    after = Barrier(batch, most=1.0, ease=1.0)
+    after.resume(before)
+    assert after.weight / after.tau == pytest.approx(before.weight / before.tau)
+    assert np.array_equal(after.most, before.most)
+    numbers, batch, at = case(9, one_sided=True)
+    after = Barrier(batch, most=1.0, ease=1.0)
+    after.resume(numbers)
+    assert np.array_equal(after.weight, numbers.weight)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
-from cadpanel.solver.dissection import dissect
+from cadpanel.solver.dissection import dissect, parted
 from tests.solver.models import grid, ring, strip
 
 
@@ -75,3 +75,39 @@ def test_a_square_grid_is_parted_by_few_blocks(seed):
     order = np.random.default_rng(seed).permutation(side * side)
     parts = dissect(graph_of(side * side, [(int(order[i]), int(order[j])) for i, j in grid(side, side)]))
     assert max(len(part.own) + len(part.beyond) for part in parts) <= 2 * side
+
+
+def ladder(rungs: int, waist: int | None = None) -> list[tuple[int, int]]:
+    """Rungs of two blocks each, one after the other; at the waist a single block, numbered last."""
+    pairs = [(2 * k, 2 * k + 1) for k in range(rungs)]
+    pairs += [(2 * k + side, 2 * k + 2 + side) for k in range(rungs - 1) if k + 1 != waist for side in (0, 1)]
+    if waist is not None:
+        pairs += [(2 * waist + side, 2 * rungs) for side in (-2, -1, 0, 1)]
+    return pairs
+
+
+@pytest.mark.parametrize("rungs", [20, 31, 60])
+def test_a_long_grid_is_parted_in_its_middle(rungs):
+    first, between, second = parted(graph_of(2 * rungs, ladder(rungs)))
+    assert len(between) <= 2
+    assert abs(len(first) - len(second)) <= 3
+    assert sorted([*first, *between, *second]) == list(range(2 * rungs))
+
+
+@pytest.mark.parametrize("waist", range(5, 26))
+def test_a_waist_parts_only_if_it_leaves_a_third_on_both_sides(waist):
+    first, between, second = parted(graph_of(61, ladder(30, waist)))
+    halves = sorted([2 * waist, 60 - 2 * waist])
+    if 3 * halves[0] >= 61:
+        assert between.tolist() == [60]
+        assert sorted([len(first), len(second)]) == halves
+    else:
+        assert len(between) == 2
+        assert 3 * min(len(first), len(second)) >= 61
+
+
+def test_what_is_not_coupled_is_parted_by_nothing():
+    pairs = [(k, k + 1) for k in range(119) if k != 50]
+    first, between, second = parted(graph_of(120, pairs))
+    assert len(between) == 0
+    assert sorted([len(first), len(second)]) == [51, 69]

@@ -5,9 +5,9 @@ import pytest
 
 from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
 from cadpanel.solver.hold import Hold
-from cadpanel.solver.interior_point import Limits
+from cadpanel.solver.interior_point import Limits, interior_point
 from cadpanel.solver.stop import Stop
-from tests.solver.models import HeldBatch, HeldTargets, held_points
+from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
 
 
 def between(first: float, second: float, **second_is: bool) -> HeldTargets:
@@ -52,6 +52,16 @@ def test_no_distance_is_worth_more_than_the_most_cost():
     assert found.stopped is Stop.TOO_COSTLY
     # Half the square of the way is the cost: a way of 1 at the most, to 2 of 1.
     assert 2.0 <= found.excess <= 2.3
+
+
+def test_what_a_run_that_was_too_short_misses_is_looked_for_and_held_whole():
+    targets = np.random.default_rng(2).normal(size=(12, 2))
+    model = held_chain(targets, 0.05)
+    short = interior_point(model, targets.copy(), Limits(steps=2))
+    assert short.best.excess > 1.0
+    found = hold_or_give_way(model, targets.copy(), Limits(steps=2))
+    assert found.stopped is Stop.HELD
+    assert found.excess <= 1.0 + 1e-6
 
 
 def test_what_is_told_to_stop_says_so_and_keeps_what_must_hold():

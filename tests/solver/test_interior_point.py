@@ -11,7 +11,7 @@ from scipy.optimize import NonlinearConstraint, minimize
 from cadpanel.arrays import Array
 from cadpanel.solver.bounds import Bounds
 from cadpanel.solver.hold import Hold
-from cadpanel.solver.interior_point import Limits, interior_point
+from cadpanel.solver.interior_point import Best, Limits, interior_point
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
 
 few = settings(max_examples=10)
@@ -125,9 +125,32 @@ def test_going_on_with_its_multipliers_takes_fewer_steps():
     narrower = held_chain(targets, 0.099)
     cold = interior_point(narrower, targets.copy(), Limits())
     warm = interior_point(narrower, first.best.unknowns, Limits(), after=first)
+    costs: list[float] = []
+
+    def tell(*args):
+        costs.append(args[2])
+        return True
+
+    interior_point(held_chain(targets, 0.099), first.best.unknowns, Limits(), after=first, tell=tell)
+    assert max(costs) <= 1.05 * first.best.cost
     assert warm.settled
     assert warm.steps < cold.steps
     assert narrower.free_cost(warm.best.unknowns) == pytest.approx(narrower.free_cost(cold.best.unknowns), rel=LEFT)
+
+
+@pytest.mark.parametrize(
+    ("mine", "its", "beaten"),
+    [
+        ((1.0, 5.0), (1.2, 1.0), False),  # what must hold comes first
+        ((1.2, 1.0), (1.1, 9.0), True),
+        ((0.3, 5.0), (0.9, 4.0), True),  # what holds holds, by however much
+        ((0.3, 1.1), (0.3, 1.2), False),
+        ((0.3, 0.2), (0.9, 0.9), True),  # all is held: the later one has settled more
+    ],
+)
+def test_the_best_holds_what_it_must_and_exceeds_the_rest_least(mine, its, beaten):
+    one, other = (Best(np.zeros((1, 1)), firm, excess, 0.0) for firm, excess in (mine, its))
+    assert one.beaten_by(other) is beaten
 
 
 def test_wider_distances_are_those_of_what_gives_way_alone():

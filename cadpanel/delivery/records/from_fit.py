@@ -55,7 +55,9 @@ def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
 
 def solve_record(result: FitResult) -> SolveModel:
     """How the result was reached."""
-    return SolveModel(iterations=result.iterations, starts=result.starts, agreed=result.agreed)
+    return SolveModel(
+        iterations=result.iterations, starts=result.starts, agreed=result.agreed, gap_price=result.gap_price
+    )
 
 
 def baselines_record(result: FitResult) -> BaselinesModel:

@@ -60,11 +60,14 @@ class SolveModel(Record):
         iterations: linear systems solved.
         starts: how many starts were made.
         agreed: how many of them ended within 1 % of the best.
+        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
+            where no gap is held at its tolerance.
     """
 
     iterations: NonNegativeCount
     starts: NonNegativeCount
     agreed: NonNegativeCount
+    gap_price: NonNegative | None = None
 
 
 class PanelModel(Record):

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.holding import MARGIN, held_within, seam_terms
+from cadpanel.fitting.methods.holding import MARGIN, gap_price, held_within, seam_terms
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
@@ -92,7 +92,9 @@ def _hold_seams(
         found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
         iterations += found.iterations
         stopped = found.stopped
-    return Fitted(found.unknowns, iterations, stopped)
+    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
+    price = gap_price(problem, model, found, settings.gap_tolerance) if stopped is Stop.HELD else None
+    return Fitted(found.unknowns, iterations, stopped, gap_price=price)
 
 
 def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:

@@ -26,6 +26,25 @@ def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
     return [*problem.corner_gaps(tolerance), *problem.curve_gaps(tolerance)]
 
 
+def gap_price(problem: Problem, model: HeldObjective, found: HeldSolution, tolerance: float) -> float:
+    """By how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order.
+
+    A multiplier w is the weight of |v|^2 / 2 that holds the vector v at its distance r: where all distances grow by a
+    share, the cost falls by the sum of all w r^2 times that share (the envelope theorem).
+
+    Args:
+        problem: the panels.
+        model: what was held.
+        found: where it ended.
+        tolerance: of gaps, mm.
+    """
+    pairs = zip(model.held, found.end.multipliers, strict=True)
+    pull = sum(float(np.sum(weight * term.hold.radius**2)) for term, weight in pairs if term.hold.gives_way)
+    cost = float(problem.deviation.cost(problem.state(found.unknowns)).sum())
+    rms = float(np.sqrt(2.0 * cost / problem.panels))
+    return problem.place.length * pull / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
+
+
 def held_within(
     problem: Problem,
     model: HeldObjective,

@@ -25,6 +25,8 @@ class Fitted:
         stopped: why no better ones were looked for.
         agreed: how many of the starts, the first included, ended within 1 % of the best deviation and held.
         starts: how many starts were made.
+        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
+            where no gap is held at its tolerance.
     """
 
     unknowns: Array
@@ -32,6 +34,7 @@ class Fitted:
     stopped: Stop
     agreed: int = 1
     starts: int = 1
+    gap_price: float | None = None
 
 
 class Method(ABC):

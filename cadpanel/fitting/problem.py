@@ -133,6 +133,10 @@ class Problem:
             moves[group.panels[:, None], held] = False
         return moves
 
+    def rms(self, cost: float) -> float:
+        """The RMS deviation of all panels in the solver's length, of the deviation term's cost."""
+        return float(np.sqrt(2.0 * cost / self.panels))
+
     def deviations(self, unknowns: Array) -> tuple[Array, Array]:
         """RMS per panel (panels,), area-weighted, and signed distances (panels, m) of all samples, mm."""
         distance, _ = self.deviation.distances(self.state(unknowns))

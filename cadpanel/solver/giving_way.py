@@ -77,7 +77,7 @@ def hold_or_give_way(
     search = _Search(model, replace(limits, steps=_STEPS), tell, first.steps)
     kept, ease = search.run(start, _FREE), _FREE
     if kept.best.firm > _HOLDS and not search.stopped:  # from elsewhere it may be nearer
-        other = search.run(first.point.unknowns, _FREE)
+        other = search.run(first.now.unknowns, _FREE)
         kept = other if other.best.firm < kept.best.firm else kept
     if kept.best.firm > _HOLDS:  # what must hold cannot: whatever comes nearest
         nearer = first if best.firm <= kept.best.firm else kept
@@ -95,7 +95,7 @@ def _ended_early(model: HeldModel, start: Array, limits: Limits, first: Ended) -
     """The best so far, after a few more steps that bring back what must not give way."""
     search = _Search(model, replace(limits, steps=_LAST_STEPS), None, first.steps)
     now = max(first.now.excess, 1.0)
-    ends = [(first, 1.0), (search.run(first.point.unknowns, now), now)]
+    ends = [(first, 1.0), (search.run(first.now.unknowns, now), now)]
     if all(end.best.firm > _HOLDS for end, _ in ends):
         search = _Search(model, replace(limits, steps=_STEPS), None, search.steps)
         ends.append((search.run(start, _FREE), _FREE))

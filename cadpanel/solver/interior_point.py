@@ -69,7 +69,7 @@ class Ended:
     """Where the steps ended.
 
     Attributes:
-        point, now: the last, and what it is worth.
+        now: the last point.
         best: unknowns (count, size) of the best point: of those in which what must not give way holds the one that
             exceeds the other distances least, and of those that exceed none the one with the least cost.
         multipliers: for each batch (groups, vectors) the weight w of |v|^2 / 2 in the cost that holds the vector.
@@ -79,7 +79,6 @@ class Ended:
         barriers, mu, damping: to go on from.
     """
 
-    point: Point
     now: Best
     best: Best
     multipliers: tuple[Array, ...]
@@ -93,7 +92,7 @@ class Ended:
 
 @dataclass(frozen=True, slots=True)
 class Best:
-    """The best point that was met.
+    """A point, and what it is worth beside others.
 
     Attributes:
         unknowns: (count, size).
@@ -151,7 +150,7 @@ class _Run:
             self._begin()
         else:
             self._resume(after)
-        self.best = self._worth(self.point)
+        self.now = self.best = self._worth(self.point)
 
     def _begin(self) -> None:
         giving = [(one, v) for one, v in zip(self.model.held, self.point.vectors, strict=True) if one.hold.gives_way]
@@ -182,11 +181,9 @@ class _Run:
             steps += 1
             settled = self._step()
             if self.tell is not None:
-                now = self._worth(self.point)
-                stopped = not self.tell(steps, max(now.firm, now.excess * self.ease), now.cost)
+                stopped = not self.tell(steps, max(self.now.firm, self.now.excess * self.ease), self.now.cost)
         return Ended(
-            point=self.point,
-            now=self._worth(self.point),
+            now=self.now,
             best=self.best,
             multipliers=tuple(barrier.weight / barrier.tau**2 for barrier in self.barriers),
             steps=steps,
@@ -246,10 +243,10 @@ class _Run:
                 barrier.recentre(vectors, self.mu, stuck[pattern.component])
             if settled:
                 barrier.raise_most(vectors, whole, _ELASTIC_RISE)
-        now = self._worth(self.point)
-        if self.best.beaten_by(now):
-            self.best = now
-        return self._narrow(settled, failed, promised, cost, max(now.firm, now.excess))
+        self.now = self._worth(self.point)
+        if self.best.beaten_by(self.now):
+            self.best = self.now
+        return self._narrow(settled, failed, promised, cost, max(self.now.firm, self.now.excess))
 
     def _narrow(self, settled: bool, failed: BoolArray, promised: float, cost: float, excess: float) -> bool:
         """Narrow distances and barrier as far as the steps have settled; whether nothing is left to do."""

@@ -150,7 +150,7 @@ def _row(label: str, fit: Callable[..., cp.FitResult], of: cp.Reference, how: Fi
 
 def _rms(problem: Problem, unknowns: Array) -> float:
     cost = float(problem.deviation.cost(problem.state(unknowns)).sum())
-    return float(np.sqrt(2.0 * cost / problem.panels)) * problem.place.length
+    return problem.rms(cost) * problem.place.length
 
 
 class _DoneError(Exception):

@@ -115,7 +115,7 @@ def test_every_step_is_told_and_anybody_may_end_it():
     assert end.told_to_stop
     assert not end.settled
     assert [step for step, _, _ in told] == [1, 2, 3]
-    assert told[-1][2] == model.free_cost(end.point.unknowns)
+    assert told[-1][2] == model.free_cost(end.now.unknowns)
 
 
 def test_going_on_with_its_multipliers_takes_fewer_steps():

@@ -41,7 +41,7 @@ def gap_price(problem: Problem, model: HeldObjective, found: HeldSolution, toler
     pairs = zip(model.held, found.end.multipliers, strict=True)
     pull = sum(float(np.sum(weight * term.hold.radius**2)) for term, weight in pairs if term.hold.gives_way)
     cost = float(problem.deviation.cost(problem.state(found.unknowns)).sum())
-    rms = float(np.sqrt(2.0 * cost / problem.panels))
+    rms = problem.rms(cost)
     return problem.place.length * pull / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
 
 
@@ -71,7 +71,7 @@ def held_within(
     exact = 0.5 * problem.panels * _EXACT**2
 
     def told(step: int, excess: float, cost: float) -> bool:
-        return tell is None or tell(step, excess, float(np.sqrt(2.0 * cost / problem.panels)) * problem.place.length)
+        return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
     return hold_or_give_way(model, begin, Limits(least_cost=exact), most_cost=most, after=after, tell=told)

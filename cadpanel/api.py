@@ -151,10 +151,11 @@ def compare(
     from cadpanel.delivery.folder import COMPARISON, delivery_folder
     from cadpanel.delivery.records.comparison import write_comparison
     from cadpanel.delivery.records.table1 import comparison_record
+    from cadpanel.studies.table1 import USUAL
     from cadpanel.studies.table1 import compare as compare_reference
 
     _require(reference, Reference, "what is compared is a reference as read() gives it")
-    how = _asked(settings, changes)
+    how = _asked(settings or USUAL, changes)
     # Refused before the fits, which take their time.
     with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
         comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))

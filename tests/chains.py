@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.catalogue import CATALOGUE, feature
+from cadpanel.features.edge_pieces import edge_pieces
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
 from cadpanel.features.patches import Cone, Cylinder, Plane
@@ -17,8 +18,9 @@ from cadpanel.features.rulings import PanelFeature, Points
 from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import dot
+from cadpanel.reference.across_seams import AcrossSeams, across_edges
 from cadpanel.terms.deviation import Deviation
-from cadpanel.terms.outline import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline, Pieces
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
@@ -171,7 +173,19 @@ def problem_of(
         seams=batches(layout, met, along, backwards, pair.reshape(-1)),
         pairs=coupled,
         bounds=(np.full((panels, layout.size), -np.inf), np.full((panels, layout.size), np.inf)),
+        across=across_near(layout, met, along, backwards, random),
     )
+
+
+def across_near(
+    layout: Layout, met: IntArray, along: IntArray, backwards: BoolArray, random: np.random.Generator
+) -> AcrossSeams:
+    """The seams between chains, on a drawing with one normal a seam."""
+    sided = np.array([isinstance(one, Feature) for one in layout.feature_of])
+    index = np.flatnonzero(sided[met].all(axis=1))
+    normals = random.normal(size=(len(index), 1, 3)) + np.array([0.0, 0.0, 3.0])
+    normals = np.repeat(normals / np.linalg.norm(normals, axis=-1, keepdims=True), 2, axis=1)
+    return across_edges(index, met[index], along[index], backwards[index], normals)
 
 
 def _random_samples(of: PanelFeature, corners: Array, random: np.random.Generator) -> Array:
@@ -214,7 +228,21 @@ def outline_near(layout: Layout, corners: Array, random: np.random.Generator, sh
         along=Limited(corners=np.tile(np.arange(inner), (panels, 1)), part=along),
         across=Limited(corners=held, part=across),
         sided=np.array([isinstance(one, Feature) for one in layout.feature_of]),
+        pieces=pieces_near(layout, random),
     )
+
+
+def pieces_near(layout: Layout, random: np.random.Generator) -> Pieces:
+    """All pieces of all edges, of drawn edges in planes with random normals; some of them count as longer."""
+    own = [edge_pieces(one.edges) for one in layout.feature_of]
+    most = max(len(pieces.edge) for pieces in own)
+    points, planes = np.zeros((len(own), most, 2), dtype=np.intp), np.zeros((len(own), most, 3))
+    for i, pieces in enumerate(own):
+        count = len(pieces.edge)
+        points[i, :count], planes[i, :count] = pieces.points, random.normal(size=(count, 3))
+    sizes = np.linalg.norm(planes, axis=-1, keepdims=True)
+    lengths = np.where(sizes[..., 0] > 0.0, random.uniform(0.1, 20.0, sizes.shape[:2]), 0.0)
+    return Pieces(points=points, planes=planes / np.where(sizes > 0.0, sizes, 1.0), lengths=lengths)
 
 
 def rulings_of(walked):

@@ -21,6 +21,8 @@ _FINE = 17
 _NEAR = 1e-3
 # Seams together: all against all of their points is much to hold.
 _TOGETHER = 40
+# Share of a patch on either side over which the tangent is taken.
+_AHEAD = 1e-5
 # The end of one patch, not the start of the next.
 _LAST = 1.0 - 1e-13
 
@@ -46,20 +48,20 @@ QUICK = Density(points=18, peaks=2, close=2e-3, targets=48)
 FINE = Density(points=192, peaks=8, close=1e-5, targets=384)
 
 
-def dense_seam_gap(first: EndCurves, second: EndCurves, density: Density) -> tuple[Array, Array]:
-    """Symmetric Hausdorff distance (s,) in mm and kink (s,) in radians of s pairs of curves."""
+def dense_seam_gap(first: EndCurves, second: EndCurves, density: Density) -> Array:
+    """(4, s) symmetric Hausdorff distance, kink in radians, width and step of s pairs of curves, in mm."""
     found = []
     for start in range(0, len(first.corners), _TOGETHER):
         some = np.arange(start, min(start + _TOGETHER, len(first.corners)))
         pair = first.take(some), second.take(some)
         ways = [_one_way(one, other, density) for one, other in (pair, pair[::-1])]
         found.append(np.maximum(*ways))
-    gap, kink = np.concatenate(found, axis=1)
-    return gap, kink
+    whole: Array = np.concatenate(found, axis=1)
+    return whole
 
 
 def _one_way(one: EndCurves, other: EndCurves, density: Density) -> Array:
-    """(2, s) the largest distances and angles that the first curves' points have."""
+    """(4, s) the largest distances, angles, widths and steps that the first curves' points have."""
     to = _Targets(other, density.targets)
     rows = np.arange(len(one.corners))[:, None]
     stations = np.tile(np.linspace(0.0, one.patches, one.patches * density.points + 1), (len(rows), 1))
@@ -80,6 +82,11 @@ def _one_way(one: EndCurves, other: EndCurves, density: Density) -> Array:
     return np.stack(largest)
 
 
+def _unit(vectors: Array) -> Array:
+    scaled: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return scaled
+
+
 class _Targets:
     """Points along every patch of a curve, and the parabolas through each three of them."""
 
@@ -91,8 +98,8 @@ class _Targets:
         points = curves.follow(np.broadcast_to(u, (len(curves.corners), len(u))))[0]
         self.patches = np.split(points, curves.patches, axis=1)
 
-    def measure(self, one: EndCurves, u: Array) -> tuple[Array, Array]:
-        """Distances and angles (s, q) at the parameters (s, q) of the other curve."""
+    def measure(self, one: EndCurves, u: Array) -> tuple[Array, Array, Array, Array]:
+        """Distances, angles, widths and steps (s, q) at the parameters (s, q) of the other curve."""
         x, normals = one.follow(u)
         least, v = np.full(u.shape, np.inf), np.zeros(u.shape)
         for patch, points in enumerate(self.patches):
@@ -107,7 +114,13 @@ class _Targets:
         v = np.clip(middle + offset * _NEAR, start, start + _LAST)
         there, facing = self.curves.follow(v)
         chord = np.linalg.norm(normals - facing, axis=-1)
-        return np.linalg.norm(there - x, axis=-1), 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0))
+        before, after = (self.curves.follow(np.clip(v + side * _AHEAD, start, start + _LAST))[0] for side in (-1, 1))
+        tangent = _unit(after - before)
+        way = there - x
+        square_on = way - dot(way, tangent)[..., None] * tangent
+        step = dot(square_on, _unit(normals + facing))
+        width = np.sqrt(np.maximum(dot(square_on, square_on) - step**2, 0.0))
+        return np.linalg.norm(way, axis=-1), 2.0 * np.arcsin(np.minimum(0.5 * chord, 1.0)), width, np.abs(step)
 
     def _nearest(self, x: Array, points: Array) -> tuple[Array, Array]:
         """Squared distances (s, q) of x (s, q, 3) from a patch's points (s, count + 1, 3), and shares of the patch."""

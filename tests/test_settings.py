@@ -77,11 +77,11 @@ def test_the_limits_that_can_be_set_are_fields_with_their_defaults() -> None:
 
 def test_the_reports_settings_are_those_of_the_fit_and_of_the_sheet() -> None:
     sheet = SHEET - {"schema"} | {SCHEMA}
-    assert set(SettingsModel.model_fields) == FIT | sheet | OF_THE_RECORD | OF_THE_READING
+    assert set(SettingsModel.model_fields) == FIT | sheet | OF_THE_RECORD | OF_THE_READING | {"gaps"}
 
 
 def test_the_comparisons_settings_are_those_that_all_columns_share() -> None:
-    shared = FIT - set(OF_A_COLUMN) | OF_THE_READING | {"cadpanel_version"}
+    shared = FIT - set(OF_A_COLUMN) | OF_THE_READING | {"cadpanel_version", "gaps"}
     assert set(ComparisonSettingsModel.model_fields) == shared
 
 
@@ -130,7 +130,7 @@ def asked_again(record: ComparisonSettingsModel) -> FitSettings:
     """The settings that a record tells of, by its keys alone; with weights there was no tolerance."""
     told = {name: getattr(record, name) for name in FIT if hasattr(record, name)}
     if record.weights is not None:
-        told |= {"weights": Weights(**record.weights.model_dump()), "gap_tolerance": 1.0}
+        told |= {"weights": Weights(**record.weights.model_dump())}
     return FitSettings(**told)
 
 

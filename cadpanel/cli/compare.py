@@ -12,13 +12,14 @@ from cadpanel.delivery.records.comparison import ComparisonModel, write_comparis
 from cadpanel.delivery.records.settings import OF_A_COLUMN
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.studies.table1 import USUAL
 
 
 @options.made_of_settings
 def compare(
     reference: options.ReferenceFile,
     out: options.Out,
-    settings: Annotated[FitSettings, options.Without(OF_A_COLUMN)],
+    settings: Annotated[FitSettings, options.Without(OF_A_COLUMN), options.Usual(USUAL)],
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,

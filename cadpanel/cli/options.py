@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from functools import wraps
 from inspect import Parameter, Signature, signature
 from pathlib import Path
@@ -66,19 +66,32 @@ class Without:
     names: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class Usual:
+    """Beside a parameter's type: settings that hold where nothing is given, instead of their fields' defaults."""
+
+    settings: object
+
+    def own(self) -> dict[str, object]:
+        """What differs from the defaults."""
+        found = {field: getattr(self.settings, field.name) for field, _ in options_of(type(self.settings))}
+        return {field.name: value for field, value in found.items() if value != field.default}
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Asked:
-    """One setting as a command asks for it."""
+    """One setting as a command asks for it; `usual` where nothing is given, if it is not the settings' default."""
 
     name: str
     option: Option
     parameter: Parameter
+    usual: Mapping[str, object]
 
     def of(self, given: Mapping[str, Any]) -> dict[str, object]:
         """The setting by its name; nothing where what is shown as the default stands, which says it for people."""
         value = given[self.name]
         if value is None or value == self.parameter.default:
-            return {}
+            return dict(self.usual)
         return {self.name: value if self.option.read is None else self.option.read(flag(self.name), value)}
 
 
@@ -129,12 +142,18 @@ def _settings_of(hint: Any) -> tuple[type[Any] | None, Iterable[object]]:
 
 def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
     hints = get_type_hints(settings)
-    found = {
-        field.name: _Asked(
-            name=field.name, option=option, parameter=_parameter(field.name, hints[field.name], field.default, option)
+    usual = {name: value for one in choice if isinstance(one, Usual) for name, value in one.own().items()}
+    found = {}
+    for field, option in options_of(settings):
+        name, told = field.name, usual.get(field.name, field.default)
+        # What may be left empty is not told, or it would seem to have been given.
+        option = replace(option, told=option.told and field.default is not None)
+        found[name] = _Asked(
+            name=name,
+            option=option,
+            parameter=_parameter(name, hints[name], told, option),
+            usual={name: usual[name]} if name in usual else {},
         )
-        for field, option in options_of(settings)
-    }
     names = list(found)
     for one in choice:
         if isinstance(one, Only):
@@ -160,7 +179,8 @@ def _parameter(name: str, kind: Any, default: Any, option: Option) -> Parameter:
 
 def _refuse_contradictions(given: Mapping[str, Any]) -> None:
     """Refuse options that cannot stand together, by the names that they have here."""
-    if given.get("weights") is not None and given.get("gap_tolerance") is not None:
-        raise SettingsError("--weights take the place of a tolerance: leave out either --weights or --gap-tolerance.")
+    for gap in ("gap_tolerance", "joint_tolerance", "step", "shift") if given.get("weights") is not None else ():
+        if given.get(gap) is not None:
+            raise SettingsError(f"--weights take the place of a tolerance: leave out either --weights or {flag(gap)}.")
     if "feature" in given and (given["feature"] == AUTO) != (given["max_deviation"] is not None):
         raise SettingsError(f"--feature {AUTO} and --max-deviation go together: give both or neither.")

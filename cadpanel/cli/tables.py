@@ -14,6 +14,7 @@ from rich.text import Text
 from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+from cadpanel.delivery.records.settings import ComparisonSettingsModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
 # Deviation in mm that is worth a line of its own.
@@ -21,12 +22,26 @@ _WORTH_TELLING = 0.05
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5
 DASH = "-"
+# What a little more of each limit is, and how much of its unit.
+_WORTH = {
+    "gap": ("1 mm more gap", 1.0),
+    "width": ("joints 1 mm wider or narrower", 1.0),
+    "step": ("1 mm more step", 1.0),
+    "shift": ("1 mm more shift", 1.0),
+    "seam_turn": ("1 degree more turn of seams", 1.0),
+    "max_kink": ("1 degree more kink", 1.0),
+    "evenness": ("0.1 % more unevenness", 0.1),
+    "drift_along": ("1 % more drift along", 1.0),
+    "drift_across": ("1 % more drift across", 1.0),
+}
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
 
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str]], ...] = (
     ("Largest corner gap, mm", lambda s: length(s.max_corner_gap)),
     ("Largest seam gap, mm", lambda s: length(s.max_seam_gap)),
-    ("Largest kink, degrees", lambda s: f"{s.max_kink:.2f}"),
+    ("  width", lambda s: length(s.max_width)),
+    ("  step", lambda s: length(s.max_step)),
+    ("  shift", lambda s: length(s.max_shift)),
     ("RMS deviation, mm", lambda s: length(s.rms_deviation)),
     ("  against each alone", lambda s: multiple(s.local_rms_multiple)),
     ("Largest deviation, mm", lambda s: length(s.max_deviation)),
@@ -76,7 +91,7 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
         table.add_column(heading, justify="right", style="dim")
     table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
     columns = (report.baselines.local, report.baselines.two_stage, report.summary)
-    for heading, numbers in rows(columns, held=settings.gap_tolerance is not None):
+    for heading, numbers in rows(columns, held=settings.weights is None):
         table.add_row(heading, *map(_marked, numbers))
     out = console()
     out.print()
@@ -87,9 +102,9 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     bends = _bends(report)
     if bends:
         out.print(Text(bends))
-    price = report.solve.gap_price
-    if price is not None and price >= _WORTH_TELLING:
-        out.print(Text(f"A little more gap would save RMS deviation: at first about {price:.2g} mm a mm."))
+    traded = _traded(report)
+    if traded:
+        out.print(Text(traded))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]
@@ -98,6 +113,16 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     if len(notes) > _MOST_NOTES:
         out.print(Text(f"{counted(len(notes) - _MOST_NOTES, 'more note')} in {REPORT}."))
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def _traded(report: ReportModel) -> str:
+    """What the limits that cost most cost, in one line."""
+    prices = {name: price * _WORTH[name][1] for name, price in report.solve.prices.items() if name in _WORTH}
+    dear = sorted((name for name, saved in prices.items() if saved >= _WORTH_TELLING), key=lambda name: -prices[name])
+    if not dear:
+        return ""
+    told = ", ".join(f"{prices[name]:.2f} mm for {_WORTH[name][0]}" for name in dear[:3])
+    return f"What limits cost: RMS deviation would fall at first by about {told}."
 
 
 def _bends(report: ReportModel) -> str:
@@ -119,11 +144,23 @@ def _bends(report: ReportModel) -> str:
 def title(report: ReportModel) -> str:
     """What was fitted, and how."""
     reference, settings = report.reference, report.settings
-    asked = "weights" if settings.gap_tolerance is None else f"gap tolerance {settings.gap_tolerance:g} mm"
     return (
         f"{reference.file}: {counted(reference.panels, 'panel')}, {counted(reference.seams, 'seam')}, "
-        f"{settings.feature}, {asked}"
+        f"{settings.feature}, {asked_of_gaps(settings)}"
     )
+
+
+def asked_of_gaps(settings: ComparisonSettingsModel) -> str:
+    """What was held of gaps."""
+    if settings.weights is not None:
+        return "weights"
+    names = {
+        "gap": "gap tolerance {:g} mm",
+        "width": "joints +-{:g} mm",
+        "step": "step {:g} mm",
+        "shift": "shift {:g} mm",
+    }
+    return ", ".join(names[what].format(most) for what, most in settings.gaps.items())
 
 
 def print_certificate(certificate: CertificateModel, heading: str) -> None:
@@ -153,9 +190,8 @@ def seconds(timing: TimingModel) -> str:
 def print_comparison(comparison: ComparisonModel) -> None:
     """The paper's Table 1: one row a seam, then what the gaps cost."""
     settings = comparison.settings
-    asked = "weights" if settings.gap_tolerance is None else f"gap tolerance {settings.gap_tolerance:g} mm"
     table = Table(
-        title=f"{comparison.reference.file}: largest corner gap of each seam, mm ({asked})",
+        title=f"{comparison.reference.file}: largest corner gap of each seam, mm ({asked_of_gaps(settings)})",
         title_justify="left",
         title_style="bold",
     )

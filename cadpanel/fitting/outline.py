@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.features.edge_pieces import edge_pieces
 from cadpanel.features.layout import Layout
 from cadpanel.fitting.start.begin import Start
+from cadpanel.reference.edge_planes import edge_planes, turned_edges
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.strip import strips_of
-from cadpanel.terms.outline import Limited, Outline
+from cadpanel.terms.outline import Limited, Outline, Pieces
 from cadpanel.terms.state import State
 
 
@@ -36,7 +38,30 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
         along.set(i, np.arange(count), gauge[:, None])
         outer = np.array([0, rulings - 1, rulings, count - 1])
         across.set(i, outer, np.eye(3) - way[outer, :, None] * gauge[outer, None, :])
-    return Outline(corners=corners, along=along.limited(), across=across.limited(), sided=sided)
+    return Outline(
+        corners=corners,
+        along=along.limited(),
+        across=across.limited(),
+        sided=sided,
+        pieces=_pieces(reference, layout, begin),
+    )
+
+
+def _pieces(reference: Reference, layout: Layout, begin: Start) -> Pieces:
+    """The pieces of all edges that may not turn."""
+    planes, lengths = edge_planes(reference.panels)
+    limited = turned_edges(reference)
+    own = [edge_pieces(feature.edges) for feature in layout.feature_of]
+    most = max(len(pieces.edge) for pieces in own)
+    points, normals, sizes = np.zeros((layout.panels, most, 2), dtype=np.intp), *np.zeros((2, layout.panels, most, 3))
+    for i, pieces in enumerate(own):
+        held = limited[i, pieces.edge]
+        count = int(held.sum())
+        points[i, :count] = pieces.points[held]
+        normals[i, :count] = planes[i, pieces.edge[held]] @ begin.axes[i]
+        sizes[i, :count, 0] = lengths[i, pieces.edge[held]] / begin.length
+    used = normals.any(axis=(0, 2))
+    return Pieces(points=points[:, used], planes=normals[:, used], lengths=sizes[:, used, 0])
 
 
 def _ways(reference: Reference, layout: Layout) -> dict[int, tuple[Array, Array]]:

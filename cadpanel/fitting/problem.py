@@ -18,6 +18,7 @@ from cadpanel.fitting.outline import outline_of
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start.begin import Start, start
+from cadpanel.reference.across_seams import AcrossSeams, across_seams
 from cadpanel.reference.model import Reference, Seam
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
@@ -47,6 +48,7 @@ class Problem:
         seams: who meets whom, in batches of seams that are alike.
         pairs: (pairs, 2) coupled panels.
         bounds: (panels, size) least and greatest unknowns.
+        across: the lines that go on across seams.
     """
 
     names: tuple[str, ...]
@@ -58,6 +60,15 @@ class Problem:
     seams: tuple[SeamBatch, ...]
     pairs: IntArray
     bounds: tuple[Array, Array]
+    across: AcrossSeams
+
+    @property
+    def pair_of(self) -> IntArray:
+        """(seams,) which pair of coupled panels meets there."""
+        found = np.zeros(sum(len(batch.index) for batch in self.seams), dtype=np.intp)
+        for batch in self.seams:
+            found[batch.index] = batch.pair
+        return found
 
     @property
     def panels(self) -> int:
@@ -95,7 +106,12 @@ class Problem:
 
     def limits(self, settings: FitSettings, margin: float = 0.0) -> list[HeldTerm]:
         """What panels may not do however wide the gaps are, less a relative margin."""
-        return [term for limit in LIMITS for term in limit.held(self, settings.allowed, margin)]
+        return [term for _, term in self.named_limits(settings, margin)]
+
+    def named_limits(self, settings: FitSettings, margin: float = 0.0) -> list[tuple[str, HeldTerm]]:
+        """The same, each with the name of the limit that it holds."""
+        allowed = settings.allowed
+        return [(limit.name, term) for limit in LIMITS for term in limit.held(self, allowed, margin)]
 
     def take(self, panels: IntArray) -> Problem:
         """The same problem for some of its panels, without their seams."""
@@ -114,11 +130,13 @@ class Problem:
             seams=(),
             pairs=np.empty((0, 2), dtype=np.intp),
             bounds=(self.bounds[0][panels, : layout.size], self.bounds[1][panels, : layout.size]),
+            across=across_seams((), ()),
         )
 
     def free_terms(self, settings: FitSettings) -> list[Term]:
         """Deviation, the weak pull of corners to the outline, and what can be made: what a panel wants by itself."""
-        return [self.deviation, *self.limits(settings)]
+        limits = [term for term in self.limits(settings) if term.hold.weight.any()]
+        return [self.deviation, *limits]
 
     def placement_unknowns(self) -> BoolArray:
         """(panels, size) which unknowns move a panel or trim it: all but its curved patches' numbers."""
@@ -207,6 +225,7 @@ def _problem(
         seams=seams,
         pairs=pairs,
         bounds=natural_bounds(layout, begin.unknowns, begin.length),
+        across=across_seams(reference.panels, reference.seams),
     )
 
 

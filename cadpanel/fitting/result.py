@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +14,20 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
-from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.limits.corner_drift import DriftAlong
 
 Progress = Callable[[str, int, float, float], bool | None]
 """Told the method, the step, the largest excess over a tolerance (1 where all hold) and the RMS deviation in mm while a
 fit runs; False ends it with the best so far."""
+
+
+_OF_GAPS = {
+    "gap": "the gap tolerance of {allowed} is not met: {seam} stays open by {found}",
+    "width": "the joint tolerance of {allowed} is not met: {seam} is too wide or too narrow by {found}",
+    "step": "the step of {allowed} is not met: {seam} has one of {found}",
+    "shift": "the shift of {allowed} is not met: corners at {seam} lie {found} apart along it",
+}
+_GIVES_WAY_FIRST = DriftAlong()
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +45,10 @@ class FitResult:
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
-        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order: as long
-            as the change is small, and the panels stay near where they are; None where no gap is held at its
-            tolerance.
+        prices: by how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first
+            order: as long as the change is small, and the panels stay near where they are. By name: "gap", "width",
+            "step" and "shift" a mm, limits by their settings' names a mm, degree or whole panel's length. Empty where
+            not everything is held.
         seconds: time of the fit, without the baselines.
     """
 
@@ -52,7 +62,7 @@ class FitResult:
     agreed: int
     iterations: int
     stopped: Stop
-    gap_price: float | None
+    prices: Mapping[str, float]
     seconds: float
 
     @property
@@ -64,6 +74,11 @@ class FitResult:
     def two_stage(self) -> Measures:
         """The same measures of the industry's two stages."""
         return self.baselines.two_stage
+
+    @property
+    def gap_price(self) -> float | None:
+        """By how much one mm more of gap tolerance would lower the RMS deviation, mm; None where it is not held."""
+        return self.prices.get("gap")
 
     def shape(self, name: str) -> Panel:
         """The panel of that name.
@@ -87,7 +102,7 @@ class FitResult:
         """What does not hold, and what would help."""
         if self.tolerance_met:
             return None
-        m, tolerance = self.measures, self.settings.gap_tolerance
+        m = self.measures
         allowed = self.settings.max_deviation
         if allowed is not None and m.max_deviation.max() > allowed:
             far = int(m.max_deviation.argmax())
@@ -96,22 +111,26 @@ class FitResult:
                 f"{m.max_deviation[far]:.2f} mm away as a {self.shapes[far].feature}, the best that was found; allow "
                 "more, allow wider gaps, or divide it further"
             )
-        missed = []
-        gaps = np.maximum(m.widest_corners, m.seam_gap)
-        if len(gaps) and gaps.max() > tolerance:
-            worst = int(gaps.argmax())
-            a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
-            missed.append(
-                f"the gap tolerance of {tolerance:g} mm is not met: the seam between '{a}' and '{b}' stays open by "
-                f"{gaps[worst]:.2f} mm"
-            )
+        missed = self._missed_gaps()
         limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
         panel = int(np.argmax(limit.excess(m, most)))
         if not limit.kept(m, most)[panel]:
             value, length = float(limit.measure(m)[panel]), float(m.lengths[panel])
             missed.append(limit.missed(self.reference.panels[panel].name, value, most, length))
         else:
-            limit = LIMITS[0]  # which gives way first
+            limit = _GIVES_WAY_FIRST
         # Where both are missed by far, no wider limit helps: the feature cannot follow.
         advice = ("choose another feature, " if len(missed) > 1 else "") + f"allow a larger gap or {limit.remedy}"
         return f"{', and '.join(missed)}; {advice}"
+
+    def _missed_gaps(self) -> list[str]:
+        """What to say of the seam that exceeds most what is allowed of gaps or of one of their parts, if one does."""
+        gaps = self.measures.gaps
+        over = {what: float((gaps[what] / most).max(initial=0.0)) for what, most in self.settings.gaps.items()}
+        what = max(over, key=lambda one: over[one])
+        if over[what] <= 1.0:
+            return []
+        worst = int(gaps[what].argmax())
+        a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
+        allowed, of = f"{self.settings.gaps[what]:g} mm", gaps[what][worst]
+        return [_OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")]

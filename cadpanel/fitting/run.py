@@ -134,7 +134,7 @@ def _fit(
         agreed=chosen.agreed,
         iterations=chosen.iterations,
         stopped=chosen.stopped,
-        gap_price=chosen.gap_price,
+        prices=chosen.prices,
         seconds=time.perf_counter() - began,
     )
 
@@ -147,6 +147,6 @@ def _offenders(result: FitResult) -> IntArray:
         beyond |= m.max_deviation > how.max_deviation
     for limit, allowed in limits_of(how):
         beyond |= ~limit.kept(m, allowed)
-    for seam, gap in zip(result.reference.seams, np.maximum(m.widest_corners, m.seam_gap), strict=True):
-        beyond[list(seam.panels)] |= gap > how.gap_tolerance
+    for what, most in how.gaps.items():
+        beyond[m.seam_panels[m.gaps[what] > most]] = True
     return np.flatnonzero(beyond)

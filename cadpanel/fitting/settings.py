@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypedDict, get_args
 
+import numpy as np
+
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt, for_corners
 from cadpanel.features.rulings import PanelFeature
@@ -13,11 +15,18 @@ from cadpanel.fitting.bends.asked import Blend, blends_of
 from cadpanel.setting import Option, Range, check_ranges, require, setting
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
+from cadpanel.terms.limits.evenness import Evenness
+from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import limit_setting
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.seam_turn import SeamTurn
+from cadpanel.terms.parts import PARTS
 
 SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 """Weights farther apart would lose each other in the digits of a double."""
+
+WIDTH, STEP, SHIFT = 3.0, 3.0, 3.0
+"""mm that the parts of gaps may have if nothing is said of gaps."""
 
 Method = Literal["local", "two_stage", "concurrent"]
 
@@ -73,6 +82,15 @@ class Weights:
         return Weights(**found)
 
 
+def _part_of_gap(what: str, usual: float, told: str) -> float | None:
+    """The field of a part of gaps that is limited by itself."""
+    return setting(
+        None,
+        within=Range(what=what, least=1e-3, unit=" mm", empty=True),
+        option=Option(metavar="MM", help=f"{told} {usual:g} mm, or the gap tolerance, if not given.", told=False),
+    )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitSettings:
     """How to fit.
@@ -83,8 +101,16 @@ class FitSettings:
         max_deviation: mm that no panel may deviate from its reference where the feature is chosen automatically.
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
         method: "local", "two_stage" or "concurrent".
-        gap_tolerance: mm that no gap may exceed, at corners and along whole seams.
+        gap_tolerance: mm that no gap may exceed, at corners and along whole seams; None where its parts alone are held.
+        joint_tolerance: mm that neighbours may lie apart, or over each other, square to the seam in the skin.
+        step: mm from skin to skin along their normal.
+        shift: mm along the seam between corners that meet. Where neither a part nor the whole gap is asked for, all
+            three are held within `WIDTH`, `STEP` and `SHIFT`; where only the whole is, it holds its parts.
         weights: the paper's objective instead of a tolerance, or None.
+        seam_turn: degrees that ends, and edges on seams, may turn from the drawn ones.
+        evenness: how far corners on seams may lie off the middle between those of the seams before and after, against
+            the drawing, as a share of the panel's length.
+        max_kink: degrees between neighbouring skins across a seam; 180 for any.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
         blend: which stretch across the panels becomes their curved patches, where that is not to be told by the
@@ -107,13 +133,14 @@ class FitSettings:
         "free", option=Option(help="May the planes that cut the ends tilt into a mitre, or stand upright?")
     )
     method: Method = setting("concurrent", option=Option(help="Each panel alone; then moved about; or all at once."))
-    gap_tolerance: float = setting(
-        1.0,
-        within=Range(what="gap tolerance", least=1e-3, unit=" mm"),
-        option=Option(
-            metavar="MM", help="Largest gap between neighbours, along whole seams; 1 if not given.", told=False
-        ),
+    gap_tolerance: float | None = setting(
+        None,
+        within=Range(what="gap tolerance", least=1e-3, unit=" mm", empty=True),
+        option=Option(metavar="MM", help="Largest gap between neighbours, along whole seams, instead of its parts."),
     )
+    joint_tolerance: float | None = _part_of_gap("joint tolerance", WIDTH, "How far joints may be wider or narrower.")
+    step: float | None = _part_of_gap("step", STEP, "Largest step from skin to skin across a seam.")
+    shift: float | None = _part_of_gap("shift", SHIFT, "How far corners that meet may lie apart along the seam.")
     weights: Weights | None = setting(
         None,
         option=Option(
@@ -123,6 +150,9 @@ class FitSettings:
             help="Weigh squares against each other instead of holding a gap tolerance and the limits on drift.",
         ),
     )
+    seam_turn: float = limit_setting(SeamTurn)
+    evenness: float = limit_setting(Evenness)
+    max_kink: float = limit_setting(Kink)
     drift_along: float = limit_setting(DriftAlong)
     drift_across: float = limit_setting(DriftAcross)
     min_radius: float = limit_setting(MinRadius)
@@ -184,6 +214,16 @@ class FitSettings:
         return {limit.name: limit.allowed(self) for limit in LIMITS}
 
     @property
+    def gaps(self) -> dict[str, float]:
+        """What is held of gaps, mm: "gap" for the whole of them, "width", "step" and "shift" for their parts."""
+        whole = self.gap_tolerance
+        usual = (WIDTH, STEP, SHIFT) if whole is None else (np.inf, np.inf, np.inf)
+        asked = zip(PARTS, (self.joint_tolerance, self.step, self.shift), usual, strict=True)
+        parts = {part: usually if value is None else value for part, value, usually in asked}
+        held = {} if whole is None else {"gap": whole}
+        return held | {part: value for part, value in parts.items() if value < (np.inf if whole is None else whole)}
+
+    @property
     def automatic(self) -> bool:
         """Whether each panel gets the cheapest feature that will do."""
         return self.feature == AUTO
@@ -212,8 +252,14 @@ class FitKeywords(TypedDict, total=False):
     max_deviation: float | None
     tilt: Tilt
     method: Method
-    gap_tolerance: float
+    gap_tolerance: float | None
+    joint_tolerance: float | None
+    step: float | None
+    shift: float | None
     weights: Weights | None
+    seam_turn: float
+    evenness: float
+    max_kink: float
     drift_along: float
     drift_across: float
     min_radius: float

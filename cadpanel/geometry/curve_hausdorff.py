@@ -74,4 +74,4 @@ def hausdorff_distances(firsts: Sequence[CurvePieces], seconds: Sequence[CurvePi
         return np.zeros(0)
     one, two = _stacked(firsts), _stacked(seconds)
     origin = 0.5 * (one.centers[:, 0] + two.centers[:, 0])
-    return widest(_chains(one, origin), _chains(two, origin))[0]
+    return widest(_chains(one, origin), _chains(two, origin)).gap

@@ -14,7 +14,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains
 from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.vectors import cross, dot
-from cadpanel.geometry.widest_place import widest
+from cadpanel.geometry.widest_place import Widest, widest
 
 # Points a curved patch is followed at.
 _ARC_POINTS = 24
@@ -77,19 +77,20 @@ class EndCurves:
         return np.append(np.concatenate(parts), float(self.patches))
 
 
-def seam_gap(first: EndCurves, second: EndCurves) -> tuple[Array, Array]:
-    """Symmetric Hausdorff distance (s,) of pairs of end curves, and the largest angle (s,) between the skins there.
+def seam_gap(first: EndCurves, second: EndCurves) -> Widest:
+    """How far apart pairs of end curves are at most, in which parts, and the largest angle between the skins there.
 
-    The angle (kink, radians) is taken between the normals at each point of either curve and at its closest point on the
-    other. Both are within 1e-3 of their values; gaps below 1e-10 of the curve's extent are not told from 0.
+    All is taken between the points of either curve and their closest points on the other, and within 1e-3 of its value;
+    lengths below 1e-10 of the curve's extent are not told from 0.
     """
-    gaps, kinks = np.zeros(len(first.corners)), np.zeros(len(first.corners))
     origin = 0.5 * (first.corners[:, 0] + second.corners[:, 0])
     one, other = as_chains(first, origin), as_chains(second, origin)
-    for start in range(0, len(gaps), _TOGETHER):
+    parts = [np.zeros((4, 0))]
+    for start in range(0, len(origin), _TOGETHER):
         some = slice(start, start + _TOGETHER)
-        gaps[some], kinks[some] = widest(one.part(some), other.part(some))
-    return gaps, kinks
+        found = widest(one.part(some), other.part(some))
+        parts.append(np.stack([found.gap, found.kink, found.width, found.step]))
+    return Widest(*np.concatenate(parts, axis=1))
 
 
 def as_chains(curves: EndCurves, origin: Array) -> ConicChains:

@@ -1,5 +1,9 @@
 """Where two curves are widest apart, and where their surfaces' normals lean most: both along whole seams, at once.
 
+How far apart they are has parts. Of the way from a point to the closest point on the other curve, that along the mean
+of the two normals is the step, that in the tangent plane and square to the other curve is the width. Where the closest
+point is an end of the other curve, what is left lies along the curve, and is no part of either.
+
 Each piece of a curve is cut into a few intervals. What is looked for is known at their ends with its exact derivative,
 so that a cubic tells what to expect between; it is taken at its word only as far as it was seen to be right. Intervals
 in which the largest value of a seam may still lie are cut again, where the cubic is largest or where the closest point
@@ -9,6 +13,7 @@ passes from piece to piece, until none is left.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +37,10 @@ _MARGIN = 0.02
 """An interval is cut no closer to its ends than this share of it, but for the sake of a piece's end."""
 _MET = 1e-5
 """Share of a piece, or of an interval, that is as good as nothing."""
+_FACING = 1e-12
+"""Least square of the sum of two unit normals: such skins lie back to back, and have no mean normal."""
+_KINK = 1
+"""The row of the chords between normals among values."""
 _LEAP = 4.0
 """A closest point that goes so many times as far as its pace takes it has leaped."""
 
@@ -42,8 +51,9 @@ class _Places:
 
     Attributes:
         w: (n,) along the piece.
-        values: (2, n) squared distance from the other curve, and squared chord between the two unit normals.
-        slopes: (2, n) their derivatives by w.
+        values: (4, n) squared distance from the other curve, squared chord between the two unit normals, squared width
+            and squared step.
+        slopes: (4, n) their derivatives by w.
         column: (n,) of the other curve's piece with the closest point.
         foot: (n,) the closest point, as the number of its piece in the other curve and the share of that piece.
         pace: (n,) its derivative by w; 0 where the closest point stays at the end of the other curve.
@@ -68,7 +78,7 @@ class _Places:
 
 @dataclass(frozen=True, slots=True)
 class _Intervals:
-    """Intervals of pieces: their columns (n,), both ends, and how far (2, n) a cubic was seen to be off there."""
+    """Intervals of pieces: their columns (n,), both ends, and how far (4, n) a cubic was seen to be off there."""
 
     column: IntArray
     low: _Places
@@ -85,15 +95,28 @@ class _Intervals:
         return _Intervals(self.column[index], self.low.at(index), self.high.at(index), self.doubt[:, index])
 
 
-def widest(first: ConicChains, second: ConicChains) -> tuple[Array, Array]:
-    """Symmetric Hausdorff distances (s,) of s pairs of chains, and the largest angles (s,) between their normals.
+class Widest(NamedTuple):
+    """What s pairs of chains are apart at most.
 
-    The angle is taken between the normals of each point of either chain and of its closest point on the other, radians.
+    Attributes:
+        gap: (s,) symmetric Hausdorff distances.
+        kink: (s,) largest angles between the normals of a point of either chain and of its closest point, radians.
+        width: (s,) largest parts of those distances in the mean tangent plane, square to the curve.
+        step: (s,) largest parts along the mean normal.
     """
+
+    gap: Array
+    kink: Array
+    width: Array
+    step: Array
+
+
+def widest(first: ConicChains, second: ConicChains) -> Widest:
+    """What s pairs of chains are apart at most, along all of either of them; lengths in the chains' own unit."""
     on = stations(joined(first, second))
     seams, pieces = first.count, on.chains.pieces
     column, places = _first_places(on)
-    largest = places.values.reshape(2, 2, seams, -1).max(axis=(1, 3))
+    largest = places.values.reshape(len(places.values), 2, seams, -1).max(axis=(1, 3))
     flat = _FLAT * np.ptp(on.points.reshape(3, 2, seams, -1), axis=(1, 3)).max(axis=0)
     intervals = _first_intervals(on, column, places)
     while len(intervals.column):
@@ -103,24 +126,28 @@ def widest(first: ConicChains, second: ConicChains) -> tuple[Array, Array]:
         passing = _passing(intervals)
         may_hold = ((peak > level) | (peak + intervals.doubt > doubtful)).any(axis=0) | (passing > 0.0)
         cut = np.flatnonzero(may_hold & (intervals.width > _NARROW))
-        share = np.where(peak[0] > level[0], at[0], np.where(peak[1] > level[1], at[1], 0.5))
+        share = np.select(list(peak > level), list(at), 0.5)
         share = np.where(passing > 0.0, passing, np.clip(share, _MARGIN, 1.0 - _MARGIN))
         intervals, values = _halves(on, intervals.at(cut), share[cut])
         for row, found in zip(largest, values, strict=True):
             np.maximum.at(row, seam[cut], found)
-    return _told(largest)
+    return Widest(*_told(largest))
 
 
-def _told(values: Array) -> tuple[Array, Array]:
-    """Distances and angles from squared distances and squared chords (2, ...)."""
-    return np.sqrt(values[0]), 2.0 * np.arcsin(np.minimum(0.5 * np.sqrt(values[1]), 1.0))
+def _told(values: Array) -> Array:
+    """(4, ...) distances, angles, widths and steps from their squares, the angles' from those of their chords."""
+    found = np.sqrt(values)
+    found[_KINK] = 2.0 * np.arcsin(np.minimum(0.5 * found[_KINK], 1.0))
+    return found
 
 
 def _missable(values: Array, flat: Array, share: float) -> Array:
-    """(2, s) squared distances and chords that are larger than those found (2, s) by a share that may be missed."""
-    gaps, kinks = _told(values)
-    angles = np.minimum(kinks * (1.0 + share) + _FLAT, np.pi)
-    return np.stack([(gaps * (1.0 + share) + flat) ** 2, 4.0 * np.sin(0.5 * angles) ** 2])
+    """(4, s) squares that are larger than those found (4, s) by a share that may be missed."""
+    found = _told(values)
+    squares = (found * (1.0 + share) + flat) ** 2
+    angles = np.minimum(found[_KINK] * (1.0 + share) + _FLAT, np.pi)
+    squares[_KINK] = 4.0 * np.sin(0.5 * angles) ** 2
+    return squares
 
 
 def _first_places(on: Stations) -> tuple[IntArray, _Places]:
@@ -135,7 +162,7 @@ def _first_intervals(on: Stations, column: IntArray, places: _Places) -> _Interv
     index = np.arange(len(column)).reshape(-1, INTERVALS + 1)
     low, high = index[:, :-1].ravel(), index[:, 1:].ravel()
     left, right, middle = index[:, :-2:2].ravel(), index[:, 2::2].ravel(), index[:, 1::2].ravel()
-    pairs = _sided(on, _Intervals(column[left], places.at(left), places.at(right), np.zeros((2, len(left)))))
+    pairs = _sided(on, _Intervals(column[left], places.at(left), places.at(right), np.zeros((4, len(left)))))
     missed = np.abs(_cubic(pairs, 0.5) - places.values[:, middle])
     return _sided(on, _Intervals(column[low], places.at(low), places.at(high), np.repeat(_FADE * missed, 2, axis=1)))
 
@@ -162,11 +189,36 @@ def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, 
     straight = away - np.where(moves, slant / np.where(moves, square, 1.0), 0.0) * across
     normals, turning = chains.normals_at(column, w)
     facing, turning_there = chains.normals_at(there, share)
-    apart = normals - facing
+    apart, turned = normals - facing, turning_there * pace
+    # What lies along the other curve is no part of width and step; its closest point stays where there is any.
+    beside = np.where(moves, 0.0, slant / np.where(square > 0.0, square, 1.0))
+    square_on = straight - beside * across
+    rate = np.where(moves, pace, inner(along, across) / np.where(square > 0.0, square, 1.0)) * across - along
+    # The step is the inner product with m / |m| of the sum m of the two normals.
+    mean, mean_rate = normals + facing, turning + turned
+    size = np.maximum(inner(mean, mean), _FACING)
+    step = inner(square_on, mean) / np.sqrt(size)
+    step_rate = (inner(rate, mean) + inner(square_on, mean_rate)) / np.sqrt(size) - step * inner(mean, mean_rate) / size
+    stepping = step * step_rate
     return _Places(
         w=w,
-        values=np.stack([inner(away, away), inner(apart, apart)]),
-        slopes=2.0 * np.stack([-inner(straight, along), inner(apart, turning - turning_there * pace)]),
+        values=np.stack(
+            [
+                inner(away, away),
+                inner(apart, apart),
+                np.maximum(inner(square_on, square_on) - step**2, 0.0),
+                step**2,
+            ]
+        ),
+        slopes=2.0
+        * np.stack(
+            [
+                -inner(straight, along),
+                inner(apart, turning - turned),
+                inner(square_on, rate) - stepping,
+                stepping,
+            ]
+        ),
         column=there,
         foot=there % chains.pieces + share,
         pace=pace,
@@ -203,7 +255,7 @@ def _on_side(on: Stations, column: IntArray, places: _Places, travel: Array) -> 
 
 
 def _cubic(of: _Intervals, t: Array | float) -> Array:
-    """(2, n) the cubics with the values and slopes at both ends, at the shares t of the intervals."""
+    """(4, n) the cubics with the values and slopes at both ends, at the shares t of the intervals."""
     start, b, c, d = _powers(of)
     values: Array = start + t * (b + t * (c + t * d))
     return values
@@ -216,10 +268,10 @@ def _powers(of: _Intervals) -> tuple[Array, Array, Array, Array]:
 
 
 def _expected(of: _Intervals) -> tuple[Array, Array]:
-    """(2, n) the largest values to expect, and at which shares of the intervals; 1/2 where at an end.
+    """(4, n) the largest values to expect, and at which shares of the intervals; 1/2 where at an end.
 
     They are those of the cubics. Where the closest point leaps, the distance rises as from the low end until it falls
-    as towards the high end, and the normals' chord may be what either end leads to.
+    as towards the high end, and all else may be what either end leads to.
     """
     start, b, c, d = _powers(of)
     root = np.sqrt(np.maximum(c**2 - 3.0 * b * d, 0.0))
@@ -235,8 +287,8 @@ def _expected(of: _Intervals) -> tuple[Array, Array]:
         ridge = (rise[0] > 0.0) & (fall[0] > 0.0) & (meeting > 0.0) & (meeting < 1.0)
         t[0, leaps] = np.where(ridge, meeting, t[0, leaps])
         peak[0, leaps] = np.maximum(peak[0, leaps], np.where(ridge, low[0] + meeting * rise[0], 0.0))
-        t[1, leaps] = 0.5
-        peak[1, leaps] = np.maximum(peak[1, leaps], np.maximum(low[1] + rise[1], high[1] + fall[1]))
+        t[1:, leaps] = 0.5
+        peak[1:, leaps] = np.maximum(peak[1:, leaps], np.maximum(low[1:] + rise[1:], high[1:] + fall[1:]))
     return peak, t
 
 
@@ -269,7 +321,7 @@ def _passing(of: _Intervals) -> Array:
 
 
 def _halves(on: Stations, of: _Intervals, share: Array) -> tuple[_Intervals, Array]:
-    """Both parts of every interval, cut at shares (n,) of them, and the values (2, n) there."""
+    """Both parts of every interval, cut at shares (n,) of them, and the values (4, n) there."""
     cut = _looked_at(on, of.column, of.low.w + share * of.width)
     doubt = _FADE * np.maximum(np.abs(_cubic(of, share) - cut.values), _FADE * of.doubt)
     parts = _Intervals(

@@ -13,6 +13,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
+from cadpanel.geometry.seam_frames import seam_frames, tangents_at
 from cadpanel.geometry.vectors import dot
 from cadpanel.solver.hold import Hold
 from cadpanel.terms.placement import Placement
@@ -36,7 +37,13 @@ class _Held:
 
 
 class MixedGap(HeldTerm):
-    """Holds edges that are not alike within the tolerance of each other."""
+    """Holds edges that are not alike within the tolerance of each other.
+
+    Attributes:
+        parts: how many parts its vectors have: width and step.
+    """
+
+    parts = 2
 
     def __init__(self, seams: SeamBatch, place: Placement, layout: Layout, *, tolerance: float) -> None:
         """Hold the edges of a batch within `tolerance`, in units of the solver's length."""
@@ -49,6 +56,20 @@ class MixedGap(HeldTerm):
     def vectors(self, state: State) -> Array:
         """(seams, points, 3) from the other panel's edge."""
         return np.concatenate([self._held(state, side, derivatives=False).vectors for side in (0, 1)], axis=1)
+
+    def frames(self, state: State) -> Array:
+        """(seams, points, parts, 3) directions of the gap's parts, in the frame of the panel that is measured to."""
+        found = []
+        for side in (0, 1):
+            points = self._movers[side].places.shape[1]
+            frames = np.tile([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]], (len(self.seams.panels), points, 1, 1))
+            if self.seams.straight(1 - side):
+                other, corners = self.seams.panels[:, 1 - side, None], self.seams.corners[:, 1 - side][:, [0, -1]]
+                tangents = tangents_at(state.corners.position[other, corners])
+                of_ends = seam_frames(tangents, state.normals.position[other, corners])
+                frames[:] = of_ends[:, :1, : self.parts]
+            found.append(frames)
+        return np.concatenate(found, axis=1)
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""

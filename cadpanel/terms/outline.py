@@ -28,6 +28,25 @@ class Limited:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Pieces:
+    """The pieces of edges whose turn from the drawn edges is limited; rows of zeros where a panel has fewer.
+
+    Attributes:
+        points: (panels, P, 2) both ends, see `features.edge_pieces.EdgePieces`.
+        planes: (panels, P, 3) unit normals of the drawn edges' planes in the panels' own frames.
+        lengths: (panels, P) of the drawn edges, in the solver's length.
+    """
+
+    points: IntArray
+    planes: Array
+    lengths: Array
+
+    def take(self, panels: IntArray) -> Pieces:
+        """Those of some panels."""
+        return Pieces(points=self.points[panels], planes=self.planes[panels], lengths=self.lengths[panels])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Outline:
     """The reference's corners as the drift limits see them.
 
@@ -43,18 +62,26 @@ class Outline:
         across: outer corners, three numbers each: the drift across the free edge. A panel whose ends cannot be told
             from its sides has only these, and they are its whole drift.
         sided: (panels,) whether ends can be told from sides.
+        pieces: of the edges whose turn is limited.
     """
 
     corners: Array
     along: Limited
     across: Limited
     sided: BoolArray
+    pieces: Pieces
 
     def take(self, panels: IntArray) -> Outline:
         """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""
         along, across = self.along.take(panels), self.across.take(panels)
         count = 1 + max(int(limited.corners.max(initial=0)) for limited in (along, across))
-        return Outline(corners=self.corners[panels, :count], along=along, across=across, sided=self.sided[panels])
+        return Outline(
+            corners=self.corners[panels, :count],
+            along=along,
+            across=across,
+            sided=self.sided[panels],
+            pieces=self.pieces.take(panels),
+        )
 
     def drift(self, state: State) -> Array:
         """(panels, corners, 3) from the reference's corners to the panels'."""

@@ -37,6 +37,11 @@ class State:
         return self._points(lambda feature, walked: feature.arcs(walked))
 
     @cached_property
+    def normals(self) -> Points:
+        """The skins' unit normals (panels, corners, 3) at the corners, and their derivatives."""
+        return self._points(_corner_normals)
+
+    @cached_property
     def boundary(self) -> Points:
         """Corners and arc points after each other, and their derivatives."""
         position = np.concatenate([self.corners.position, self.arcs.position], axis=1)
@@ -63,6 +68,18 @@ class State:
             if points.jacobian is not None
         ]
         return Points(position, self.layout.gather(slopes) if len(slopes) == len(found) else None)
+
+
+def _corner_normals(feature: PanelFeature, walked: Walk) -> Points:
+    """Those of the rulings that end there, end by end, or of a polygon's one plane all round."""
+    rulings = walked.edges if walked.edges.p.shape[1] else walked.anchor
+    rounds = feature.corner_count // rulings.n.shape[1]
+    normals = np.tile(rulings.n, (1, rounds, 1))
+    if rulings.twist is None:
+        return Points(normals, None)
+    # A direction that is carried with a ruling turns by its twist: dn = omega x n.
+    turned = np.cross(rulings.twist[:, :, :3], rulings.n[..., None], axis=2)
+    return Points(normals, np.tile(turned, (1, rounds, 1, 1)))
 
 
 def slopes(points: Points) -> Array:

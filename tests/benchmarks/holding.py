@@ -23,7 +23,7 @@ import cadpanel as cp
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.methods.concurrent import Concurrent
-from cadpanel.fitting.methods.holding import MARGIN, seam_terms
+from cadpanel.fitting.methods.holding import MARGIN, gap_terms
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, pose
@@ -157,13 +157,14 @@ class _DoneError(Exception):
     """scipy is as good, or its time is over."""
 
 
-def _held(problem: Problem, how: FitSettings) -> list[HeldTerm]:
-    return [*seam_terms(problem, how.gap_tolerance * (1.0 - MARGIN)), *problem.limits(how, MARGIN)]
+def _held(problem: Problem, how: FitSettings, start: Array) -> list[HeldTerm]:
+    gaps = {what: allowed * (1.0 - MARGIN) for what, allowed in how.gaps.items()}
+    return [*gap_terms(problem, gaps, problem.state(start)), *problem.limits(how, MARGIN)]
 
 
 def _slsqp(problem: Problem, start: Array, how: FitSettings, rms: float, limit: float) -> tuple[float, str]:
     """Seconds until SLSQP holds everything at this RMS deviation, and what it had by then; dense, as scipy has it."""
-    held, shape = _held(problem, how), start.shape
+    held, shape = _held(problem, how, start), start.shape
     lower, upper = (np.clip(bound.reshape(-1), -1e3, 1e3) for bound in problem.bounds)
     began = time.process_time()
     best = [np.inf, np.inf]
@@ -224,7 +225,7 @@ def _slope(term: HeldTerm, vectors: Array, jacobians: tuple[Array, ...], shape: 
 
 def _trf(problem: Problem, start: Array, how: FitSettings, known: Array, limit: float) -> float:
     """Seconds of trf on the weights that hold everything, which it could not know: once more from the local fits."""
-    held = _held(problem, how)
+    held = _held(problem, how, start)
     for term in held:
         if term.hold.gives_way:
             term.hold.weight[:] = 0.0

@@ -23,7 +23,7 @@ from cadpanel.fitting.measures.deviation import deviations, outline_distances
 from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.fit import measure
-from cadpanel.fitting.measures.seams import corner_gaps, gaps_and_kinks
+from cadpanel.fitting.measures.seams import along_seams, corner_gaps
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.samples import SampleArrays
@@ -61,7 +61,7 @@ def parts(shapes: tuple[Panel, ...], of: Reference) -> Iterator[tuple[str, Calla
     yield "  deviation of samples", lambda: deviations(shapes, samples.points)
     yield "  deviation of outlines", lambda: outline_distances(shapes, of)
     yield "  overhang", lambda: overhang(edges, of)
-    yield "  seam gaps and kinks", lambda: gaps_and_kinks(edges, of.seams)
+    yield "  seam gaps and kinks", lambda: along_seams(edges, of.seams)
     yield "  corner gaps", lambda: corner_gaps(edges, of.seams)
     yield "  drift", lambda: drifts(edges, of)
 

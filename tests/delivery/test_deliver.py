@@ -104,8 +104,13 @@ def test_a_delivery_with_slender_cones_holds_its_proof(tmp_path: Path) -> None:
     measures = replace(
         result.measures,
         corner_gaps=(),
+        seam_panels=np.zeros((0, 2), dtype=np.intp),
         seam_gap=np.zeros(0),
+        seam_width=np.zeros(0),
+        seam_step=np.zeros(0),
+        seam_shift=np.zeros(0),
         kink=np.zeros(0),
+        uneven=np.zeros(0),
         overall_rms=float(result.measures.rms_deviation[0]),
         **{name: getattr(result.measures, name)[:1] for name in OF_PANELS},
     )
@@ -187,9 +192,9 @@ def test_an_outline_that_leaves_the_drawings_between_its_corners_is_noted() -> N
 
 def test_a_run_that_misses_gaps_and_drifts_names_both() -> None:
     result = fitted()
-    gaping = replace(result.measures, seam_gap=result.measures.seam_gap + 7.0)
+    gaping = replace(result.measures, seam_step=result.measures.seam_step + 7.0)
     both = replace(gaping, drift_across=result.measures.drift_across + 300.0)
     sentences = [replace(result, measures=m, tolerance_met=False).shortfall() or "" for m in (gaping, both)]
     assert ["the drift limits are not met" in sentence for sentence in sentences] == [False, True]
-    assert all("the gap tolerance of 1 mm is not met" in sentence for sentence in sentences)
+    assert all("the step of 3 mm is not met" in sentence for sentence in sentences)
     assert "choose another feature" in sentences[1]

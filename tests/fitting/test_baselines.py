@@ -62,7 +62,7 @@ def test_a_delivery_shows_both(counted, tmp_path):
 
 def test_what_is_chosen_automatically_is_held_against_nothing_on_the_way(counted):
     """A limit that closing the seams breaks has several candidates fitted one after the other."""
-    fit(STRIP, FitSettings(feature="auto", max_deviation=20.0))
+    fit(STRIP, FitSettings(feature="auto", max_deviation=20.0, gap_tolerance=1.0))
     assert counted["results"] > 1
     assert (counted["baselines"], counted["two_stage"]) == (0, 0)
 

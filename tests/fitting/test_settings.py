@@ -13,7 +13,8 @@ from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.terms.limits.catalogue import LIMITS
 
 ASKED = [limit for limit in LIMITS if limit.asked]
-NUMBERS = ("gap_tolerance", *(limit.name for limit in ASKED), "restarts", "seed")
+EMPTY = ("gap_tolerance", "joint_tolerance", "step", "shift")
+NUMBERS = (*EMPTY, *(limit.name for limit in ASKED), "restarts", "seed")
 
 
 @pytest.mark.parametrize("name", NUMBERS)
@@ -28,6 +29,9 @@ def test_numbers_that_are_none_infinite_or_negative_are_refused(name, value):
 @pytest.mark.parametrize("value", ["1", None, [1.0], 1j])
 def test_what_is_no_number_is_refused_by_the_settings_name(name, value):
     how: dict[str, Any] = {name: value}
+    if value is None and name in EMPTY:
+        assert getattr(FitSettings(**how), name) is None
+        return
     with pytest.raises(SettingsError, match=r"must be a (whole )?number, not"):
         FitSettings(**how)
 
@@ -57,7 +61,7 @@ def test_weights_that_no_double_can_hold_together_are_refused(name, value):
 @pytest.mark.parametrize(
     ("name", "least", "most"),
     [
-        ("gap_tolerance", 1e-3, None),
+        *((name, 1e-3, None) for name in EMPTY),
         *((limit.name, limit.least, None if math.isinf(limit.most) else limit.most) for limit in ASKED),
         ("restarts", 0, 1000),
         ("seed", 0, None),

@@ -118,7 +118,7 @@ def test_the_distance_agrees_with_a_dense_measure_within_a_thousandth(chain, mit
     pairs = [[random_panel(seed, chain=chain, mitre=of) for of in (0.3, mitre)] for seed in range(30)]
     found = hausdorff_distances(*([end_of(pair[side], 1) for pair in pairs] for side in (0, 1)))
     ends = [joined_curves([end_curve(pair[side], 1) for pair in pairs]) for side in (0, 1)]
-    dense, _ = dense_seam_gap(ends[0], ends[1], DENSE)
+    dense, *_ = dense_seam_gap(ends[0], ends[1], DENSE)
     assert dense.max() > 0.01
     assert found == pytest.approx(dense, rel=1e-3, abs=1e-7)
 

@@ -104,7 +104,7 @@ def test_points_of_the_curve_have_no_distance_from_it(seed, chain):
 @given(seeds, chains)
 def test_a_curve_has_no_gap_and_no_kink_with_itself(seed, chain):
     curves = end_curve(random_panel(seed, chain=chain), 1)
-    gap, kink = seam_gap(curves, curves)
+    gap, kink, _, _ = seam_gap(curves, curves)
     assert gap == pytest.approx(0.0, abs=CLOSEST)
     assert kink == pytest.approx(0.0, abs=1e-7)
 
@@ -114,7 +114,7 @@ def test_a_curve_has_no_gap_and_no_kink_with_itself(seed, chain):
 def test_a_shift_out_of_the_cut_plane_is_the_gap(seed, chain, by):
     shape = random_panel(seed, chain=chain)
     curves = end_curve(shape, 1)
-    gap, _ = seam_gap(curves, shifted(curves, by * shape.cut_normals[1]))
+    gap, *_ = seam_gap(curves, shifted(curves, by * shape.cut_normals[1]))
     assert gap == pytest.approx(by, abs=CLOSEST)
 
 
@@ -151,7 +151,7 @@ def test_a_seam_walked_the_other_way_has_the_same_gap(seed):
     shape = random_panel(seed)
     curves = end_curve(shape, 1)
     turned = backwards(curves)
-    gap, kink = seam_gap(curves, turned)
+    gap, kink, _, _ = seam_gap(curves, turned)
     assert gap == pytest.approx(0.0, abs=CLOSEST)
     assert kink == pytest.approx(0.0, abs=1e-7)
     moved = shifted(turned, 3.0 * shape.cut_normals[1])
@@ -162,7 +162,7 @@ def test_one_curve_of_a_batch_does_not_touch_the_others():
     curves = [end_curve(random_panel(seed), 0) for seed in range(4)]
     batch = EndCurves(*(np.concatenate([getattr(c, name) for c in curves]) for name in EndCurves.__slots__))
     other = shifted(batch, np.array([1.0, 2.0, 3.0]))
-    gap, kink = seam_gap(batch, other)
+    gap, kink, _, _ = seam_gap(batch, other)
     for i in range(4):
         alone = seam_gap(batch.take(np.array([i])), other.take(np.array([i])))
         assert gap[i] == pytest.approx(alone[0][0], abs=1e-9)

@@ -12,22 +12,29 @@ from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.catalogue import feature
 from cadpanel.features.feature import Feature
 from cadpanel.features.layout import Layout
+from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.methods.holding import gap_terms
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.across_seams import across_edges
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
 from cadpanel.terms.edge_gap import MixedGap
 from cadpanel.terms.limits.corner_drift import DriftTerm
-from cadpanel.terms.outline import Limited, Outline
+from cadpanel.terms.limits.evenness import EvennessTerm
+from cadpanel.terms.limits.kink import KinkTerm
+from cadpanel.terms.limits.seam_turn import TurnTerm
+from cadpanel.terms.outline import Limited, Pieces
+from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
-from cadpanel.terms.term import Term
-from tests.chains import FEATURES, made_problem, mixed_unknowns, problem_of
+from cadpanel.terms.term import HeldTerm, Term
+from tests.chains import FEATURES, made_problem, mixed_unknowns, problem_of, random_unknowns
 
 STEP = 1e-6
 # Central differences with this step, relative to the largest derivative.
@@ -36,7 +43,7 @@ DIFFERENCES = 1e-6
 ROUNDING = 1e-11
 
 
-HELD = (CornerGap, ArcGap, MixedGap, DriftTerm)
+HELD = (CornerGap, ArcGap, MixedGap, PartedGap, DriftTerm, TurnTerm, EvennessTerm, KinkTerm)
 
 
 class Together:
@@ -71,11 +78,35 @@ def drift_terms(problem: Problem) -> list[DriftTerm]:
     return [term for term in problem.limits(FitSettings()) if isinstance(term, DriftTerm)]
 
 
+def parted_gaps(problem: Problem) -> list[Term]:
+    """Gaps in parts, looked at where every panel has the same numbers: whatever their order."""
+    alike = np.zeros((problem.panels, problem.layout.size))
+    for group in problem.layout.groups:
+        (own,) = random_unknowns(group.feature, 3, 1)
+        alike[group.panels, : len(own)] = own
+    terms = gap_terms(problem, {"width": 500.0, "step": 200.0, "shift": 900.0}, problem.state(alike))
+    return list(terms)
+
+
+def limit_terms(kind: type[HeldTerm]) -> Callable[[Problem], list[Term]]:
+    """What the limits of the catalogue hold of one kind."""
+    settings = FitSettings(max_kink=5.0)
+
+    def found(problem: Problem) -> list[Term]:
+        return [term for term in problem.limits(settings) if isinstance(term, kind)]
+
+    return found
+
+
 TERMS: dict[str, Callable[[Problem], list[Term]]] = {
     "deviation": lambda problem: [problem.deviation],
     "corner gap": lambda problem: list(problem.corner_gaps(1.0)),
     "arc gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, ArcGap)],
     "mixed gap": lambda problem: [term for term in problem.curve_gaps(1.0) if isinstance(term, MixedGap)],
+    "parted gap": parted_gaps,
+    "turn": limit_terms(TurnTerm),
+    "evenness": limit_terms(EvennessTerm),
+    "kink": limit_terms(KinkTerm),
     "drift along": lambda problem: list(drift_terms(problem)[:1]),
     "drift across": lambda problem: list(drift_terms(problem)[1:]),
 }
@@ -88,6 +119,7 @@ def applies(term: str, name: str) -> bool:
         "arc gap": any(curved),
         # Turned round, an end is not alike unless it is a palindrome.
         "mixed gap": curved != curved[::-1],
+        "evenness": isinstance(FEATURES[name], Feature),
     }.get(term, True)
 
 
@@ -232,8 +264,11 @@ def with_seams(problem: Problem, panels: ArrayLike, edges: ArrayLike, backwards:
     swap = which[:, 0] > which[:, 1]
     which[swap], along[swap] = which[swap, ::-1], along[swap, ::-1]
     pairs, pair = np.unique(which, axis=0, return_inverse=True)
-    found = batches(problem.layout, which, along, np.asarray(backwards, dtype=bool), pair.reshape(-1))
-    return replace(problem, seams=found, pairs=pairs)
+    against = np.asarray(backwards, dtype=bool)
+    found = batches(problem.layout, which, along, against, pair.reshape(-1))
+    index = problem.across.index
+    across = across_edges(index, which[index], along[index], against[index], problem.across.normals)
+    return replace(problem, seams=found, pairs=pairs, across=across)
 
 
 def seams_of(problem: Problem) -> tuple[IntArray, IntArray, BoolArray]:
@@ -289,11 +324,21 @@ def flipped(case: Case, panel: int) -> Case:
             corners=corners,
             along=turned(p.outline.along, count),
             across=turned(p.outline.across, 4),
+            pieces=_turned_pieces(p.outline.pieces, panel, count, len(ARC_SHARES) * 2 * sum(of.curved)),
         ),
     )
     unknowns = case.unknowns.copy()
     unknowns[panel, : len(of.free)] = _turned_end_for_end(of, case.unknowns[panel, : len(of.free)])
     return Case(with_seams(problem, panels, np.where(here, edges ^ 1, edges), backwards ^ here.any(axis=1)), unknowns)
+
+
+def _turned_pieces(pieces: Pieces, panel: int, corners: int, arcs: int) -> Pieces:
+    """The same pieces of a panel whose corners and arc points are counted from its other end."""
+    points, planes = pieces.points.copy(), pieces.planes.copy()
+    own = points[panel]
+    points[panel] = np.where(own < 0, -1 - (arcs - 1 - (-1 - own)), corners - 1 - own)
+    planes[panel] *= _HALF_TURN
+    return Pieces(points=points, planes=planes, lengths=pieces.lengths)
 
 
 def _turned_end_for_end(of: Feature, unknowns: Array) -> Array:
@@ -322,9 +367,9 @@ def counted_from(case: Case, panel: int, corner: int) -> Case:
     corners[panel, :count] = corners[panel, order]
     unknowns[panel, 3 : 3 + 2 * count] = unknowns[panel, 3 : 3 + 2 * count].reshape(count, 2)[order].reshape(-1)
     panels, edges, backwards = seams_of(p)
-    problem = replace(
-        p, outline=Outline(corners=corners, along=p.outline.along, across=p.outline.across, sided=p.outline.sided)
-    )
+    points = p.outline.pieces.points.copy()
+    points[panel] = (points[panel] - corner) % count
+    problem = replace(p, outline=replace(p.outline, corners=corners, pieces=replace(p.outline.pieces, points=points)))
     return Case(
         with_seams(problem, panels, np.where(panels == panel, (edges - corner) % count, edges), backwards), unknowns
     )

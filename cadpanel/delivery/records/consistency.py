@@ -130,6 +130,9 @@ def _summary_faults(report: ReportModel) -> Iterator[str]:
 _OF_SEAMS: dict[str, Callable[[SeamModel], float]] = {
     "max_corner_gap": lambda seam: seam.max_corner_gap,
     "max_seam_gap": lambda seam: seam.max_seam_gap,
+    "max_width": lambda seam: seam.width,
+    "max_step": lambda seam: seam.step,
+    "max_shift": lambda seam: seam.shift,
     "max_kink": lambda seam: seam.max_kink,
 }
 _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
@@ -142,21 +145,29 @@ _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
 
 
 def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
-    tolerance = report.settings.gap_tolerance
-    if tolerance is None:
+    allowed = report.settings.gaps
+    if not allowed:
         return
-    widest = max(summary.max_corner_gap, summary.max_seam_gap)
+    found = {
+        "gap": max(summary.max_corner_gap, summary.max_seam_gap),
+        "width": summary.max_width,
+        "step": summary.max_step,
+        "shift": summary.max_shift,
+    }
     deviation = report.settings.max_deviation
     if summary.tolerance_met and deviation is not None and summary.max_deviation > deviation + SAME_LENGTH:
         yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
-    if summary.tolerance_met and widest > tolerance:
-        yield f"The report calls the tolerance of {tolerance:g} mm met, and a gap in it is {widest:.6g} mm wide."
+    for what, most in allowed.items():
+        if summary.tolerance_met and found[what] > most:
+            yield f"The report calls the {what} of {most:g} mm held, and one in it is {found[what]:.6g} mm."
     limits = list(_limits(report, summary))
     beyond = [limit for limit in limits if limit.over > SAME_LENGTH]
     if summary.tolerance_met and beyond:
         yield beyond[0].sentence
     far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
-    within = widest < tolerance - SAME_LENGTH and all(limit.over < -SAME_LENGTH for limit in limits)
+    within = all(found[what] < most - SAME_LENGTH for what, most in allowed.items()) and all(
+        limit.over < -SAME_LENGTH for limit in limits
+    )
     if not summary.tolerance_met and not far and within:
         yield "The report calls its tolerance not met, and all its gaps and limits are kept."
 
@@ -175,7 +186,7 @@ def _limits(report: ReportModel, summary: SummaryModel) -> Iterator[_Limited]:
         found = getattr(summary, limit.rows[-1].key)
         if found is None:
             continue
-        allowed, unit = limit.stated(limit.allowed(report.settings)), "%" if limit.percent else "mm"
+        allowed, unit = limit.stated(limit.allowed(report.settings)), "%" if limit.percent else limit.unit
         yield _Limited(
             allowed - found if limit.at_least else found - allowed,
             f"The report calls its limits met, and states {found:.6g} {unit} for the {limit.what}, where "

@@ -25,9 +25,12 @@ from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.result import FitResult
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.terms.limits.catalogue import LIMITS
 
 # An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
 WORTH_A_NOTE = 0.02
+# What saves less RMS deviation, mm a unit, costs nothing.
+_FREE = 1e-6
 FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
@@ -55,9 +58,14 @@ def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
 
 def solve_record(result: FitResult) -> SolveModel:
     """How the result was reached."""
-    return SolveModel(
-        iterations=result.iterations, starts=result.starts, agreed=result.agreed, gap_price=result.gap_price
-    )
+    return SolveModel(iterations=result.iterations, starts=result.starts, agreed=result.agreed, prices=_prices(result))
+
+
+def _prices(result: FitResult) -> dict[str, float]:
+    """What is held costs, by its name and in the units that people ask for it in; what costs nothing is left out."""
+    percent = {limit.name for limit in LIMITS if limit.percent}
+    found = {name: price / 100.0 if name in percent else price for name, price in result.prices.items()}
+    return {name: price for name, price in found.items() if price > _FREE}
 
 
 def baselines_record(result: FitResult) -> BaselinesModel:
@@ -149,6 +157,11 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> S
         corner_gaps=tuple(gaps.tolist()),
         max_corner_gap=float(gaps.max()),
         max_seam_gap=float(measures.seam_gap[index]),
+        width=float(measures.seam_width[index]),
+        step=float(measures.seam_step[index]),
+        shift=float(measures.seam_shift[index]),
+        turn=float(np.degrees(measures.edge_turns[seam.panels, seam.edges].max())),
+        unevenness=float(measures.uneven[index]),
         max_kink=float(np.degrees(measures.kink[index])),
     )
 

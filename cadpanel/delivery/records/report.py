@@ -60,14 +60,15 @@ class SolveModel(Record):
         iterations: linear systems solved.
         starts: how many starts were made.
         agreed: how many of them ended within 1 % of the best.
-        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
-            where no gap is held at its tolerance.
+        prices: by how much the RMS deviation, mm, would fall for one unit more of what is held, to first order: of gaps
+            and their parts a mm, of other limits a mm, a degree or a percent of the panel's length; empty where nothing
+            is held at its tolerance.
     """
 
     iterations: NonNegativeCount
     starts: NonNegativeCount
     agreed: NonNegativeCount
-    gap_price: NonNegative | None = None
+    prices: dict[str, NonNegative] = Field(default_factory=dict)
 
 
 class PanelModel(Record):
@@ -131,6 +132,11 @@ class SeamModel(Record):
             outermost correspond where the edges are of different kinds.
         max_corner_gap: the largest of them, mm.
         max_seam_gap: symmetric Hausdorff distance between the two edges, mm.
+        width, step, shift: largest parts of the gap along the whole seam, mm: in the skins and square to the seam,
+            along the skins' normal, along the seam at its outermost corners.
+        turn: largest angle of the two edges with the drawn seam, degrees.
+        unevenness: how far the seam's corners lie off the middle between those before and after it, against the
+            drawing, mm; 0 where a panel has no ends.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
     """
 
@@ -140,6 +146,11 @@ class SeamModel(Record):
     corner_gaps: tuple[NonNegative, ...]
     max_corner_gap: NonNegative
     max_seam_gap: NonNegative
+    width: NonNegative = 0.0
+    step: NonNegative = 0.0
+    shift: NonNegative = 0.0
+    turn: NonNegative = 0.0
+    unevenness: NonNegative = 0.0
     max_kink: NonNegative
 
 
@@ -152,7 +163,9 @@ class SummaryModel(Record):
     Attributes:
         max_corner_gap: largest distance between two corresponding corners.
         max_seam_gap: largest distance between two end curves, along the whole seam.
+        max_width, max_step, max_shift: the largest of their parts.
         max_kink: largest angle between two neighbouring skins' normals.
+        max_unevenness: how far a corner on a seam lies off the middle between those before and after it.
         rms_deviation: root mean square over all samples.
         max_deviation: largest distance of the reference, its outline included, to the patches.
         hausdorff: two-sided distance between the trimmed skin and the reference.
@@ -167,7 +180,11 @@ class SummaryModel(Record):
 
     max_corner_gap: NonNegative
     max_seam_gap: NonNegative
+    max_width: NonNegative = 0.0
+    max_step: NonNegative = 0.0
+    max_shift: NonNegative = 0.0
     max_kink: NonNegative
+    max_unevenness: NonNegative = 0.0
     rms_deviation: NonNegative
     max_deviation: NonNegative
     hausdorff: NonNegative

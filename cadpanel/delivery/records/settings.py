@@ -37,7 +37,10 @@ class ComparisonSettingsModel(Record):
     Attributes:
         cadpanel_version: of the program that wrote the file.
         tilt: "free" where cut planes may tilt, "fixed" where they stand upright.
-        gap_tolerance: largest gap allowed between neighbours, mm; None where weights ruled instead.
+        gap_tolerance: largest gap allowed between neighbours, mm; None where it was not asked for, or weights ruled.
+        joint_tolerance, step, shift: the same of its parts, mm.
+        gaps: what was held of gaps, mm: "gap" the whole, "width", "step" and "shift" its parts; empty where weights
+            ruled.
         weights: the weights, or None where a tolerance was held.
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
@@ -51,6 +54,10 @@ class ComparisonSettingsModel(Record):
     cadpanel_version: str
     tilt: Literal["free", "fixed"]
     gap_tolerance: Annotated[float, Field(gt=0.0)] | None
+    joint_tolerance: Annotated[float, Field(gt=0.0)] | None = None
+    step: Annotated[float, Field(gt=0.0)] | None = None
+    shift: Annotated[float, Field(gt=0.0)] | None = None
+    gaps: dict[str, Annotated[float, Field(gt=0.0)]] = Field(default_factory=dict)
     weights: WeightsModel | None
     drift_along: NonNegative
     drift_across: NonNegative
@@ -104,7 +111,9 @@ def _of_fit(reference: Reference, settings: FitSettings) -> dict[str, object]:
         **_plain_fields(settings),
         "seam_tolerance": reference.seam_tolerance,
     }
-    return record if settings.weights is None else {**record, "gap_tolerance": None}
+    if settings.weights is None:
+        return {**record, "gaps": settings.gaps}
+    return {**record, "gaps": {}, "gap_tolerance": None}
 
 
 def _plain_fields(settings: Any) -> dict[str, object]:

@@ -25,6 +25,10 @@ def summary(measures: Measures, local: Measures, settings: FitSettings) -> Summa
     stated = {
         "max_corner_gap": measures.max_corner_gap,
         "max_seam_gap": measures.max_seam_gap,
+        "max_width": float(measures.seam_width.max(initial=0.0)),
+        "max_step": float(measures.seam_step.max(initial=0.0)),
+        "max_shift": float(measures.seam_shift.max(initial=0.0)),
+        "max_unevenness": float(measures.uneven.max(initial=0.0)),
         "max_kink": float(np.degrees(measures.kink.max(initial=0.0))),
         "rms_deviation": measures.overall_rms,
         "max_deviation": float(measures.max_deviation.max()),

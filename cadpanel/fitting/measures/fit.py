@@ -1,7 +1,8 @@
 """The measures, one definition for every report, test and benchmark; millimetres and radians.
 
 - corner gap: distance between corresponding corners of the two panels at a seam (the paper's Table 1).
-- seam gap: symmetric Hausdorff distance between the two edges along the whole seam, conic arcs included.
+- seam gap: symmetric Hausdorff distance between the two edges along the whole seam, conic arcs included. Its parts:
+  width in the skins' mean tangent plane and square to the seam, step along their mean normal, shift along the seam.
 - kink: largest angle between the two skins' normals across a seam.
 - deviation: distance of reference samples to their patch; the RMS is over the area, the maximum also over the outline.
 - Hausdorff: the larger of the distances from the reference to the trimmed skin and back.
@@ -18,12 +19,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.fitting.measures.boundary import overhang
 from cadpanel.fitting.measures.deviation import deviations, outline_distances
 from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.edges import PanelEdges
-from cadpanel.fitting.measures.seams import corner_gaps, gaps_and_kinks
+from cadpanel.fitting.measures.seams import along_seams, corner_gaps
+from cadpanel.fitting.measures.turns import edge_turns, seam_unevenness
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
@@ -36,10 +38,15 @@ class Measures:
     Attributes:
         corner_gaps: for each seam the gaps (corners,) at the corners that meet, in the order of its first panel, mm.
         seam_gap: (seams,) mm.
+        seam_width, seam_step, seam_shift: (seams,) largest parts of the gap, see `seams.AlongSeams`, mm.
         kink: (seams,) radians.
         rms_deviation, max_deviation: (panels,) mm.
         overall_rms: over all panels, mm; every sample counts by its area.
         hausdorff: (panels,) mm.
+        edge_turns: (panels, most edges) how far each end, and each edge on a seam, turns from the drawn one, radians.
+        uneven: (seams,) how far the corners on a seam lie off the middle between those before and after it, against
+            the drawing, mm.
+        seam_panels: (seams, 2) which panels meet there.
         drift: (panels,) of the outer corner that drifted most, mm.
         drift_along: (panels,) of the corner, inner ones included, that drifted most along the strip, mm; of a panel
             whose ends cannot be told from its sides the whole drift.
@@ -50,11 +57,17 @@ class Measures:
 
     corner_gaps: tuple[Array, ...]
     seam_gap: Array
+    seam_width: Array
+    seam_step: Array
+    seam_shift: Array
     kink: Array
     rms_deviation: Array
     max_deviation: Array
     overall_rms: float
     hausdorff: Array
+    edge_turns: Array
+    uneven: Array
+    seam_panels: IntArray
     drift: Array
     drift_along: Array
     drift_across: Array
@@ -65,6 +78,17 @@ class Measures:
     def widest_corners(self) -> Array:
         """(seams,) the largest corner gap of each seam, mm."""
         return np.array([gaps.max(initial=0.0) for gaps in self.corner_gaps])
+
+    @property
+    def turn(self) -> Array:
+        """(panels,) of the end, or of the edge on a seam, that turns most from the drawn one, radians."""
+        return np.asarray(self.edge_turns.max(axis=1))
+
+    @property
+    def gaps(self) -> dict[str, Array]:
+        """(seams,) each of what can be held of gaps, see `FitSettings.gaps`, mm."""
+        whole = np.maximum(self.widest_corners, self.seam_gap)
+        return {"gap": whole, "width": self.seam_width, "step": self.seam_step, "shift": self.seam_shift}
 
     @property
     def max_corner_gap(self) -> float:
@@ -83,16 +107,22 @@ def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
     distance, weight = deviations(shapes, samples.points), samples.weights
     largest = _largest(shapes, reference, distance, weight)
     edges = PanelEdges.of(shapes)
-    gaps, kinks = gaps_and_kinks(edges, reference.seams)
+    met = along_seams(edges, reference.seams)
     drifted = drifts(edges, reference)
     return Measures(
         corner_gaps=corner_gaps(edges, reference.seams),
-        seam_gap=gaps,
-        kink=kinks,
+        seam_gap=met.gap,
+        seam_width=met.width,
+        seam_step=met.step,
+        seam_shift=met.shift,
+        kink=met.kink,
         rms_deviation=np.sqrt(np.sum(weight * distance**2, axis=1) / weight.sum(axis=1)),
         max_deviation=largest,
         overall_rms=float(np.sqrt(np.sum(weight * distance**2) / weight.sum())),
         hausdorff=np.maximum(largest, overhang(edges, reference)),
+        edge_turns=edge_turns(edges, reference),
+        uneven=seam_unevenness(edges, reference),
+        seam_panels=np.array([seam.panels for seam in reference.seams], dtype=np.intp).reshape(-1, 2),
         drift=drifted.whole,
         drift_along=drifted.along,
         drift_across=drifted.across,

@@ -10,22 +10,53 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
-from cadpanel.geometry.panel import Panel
-from cadpanel.geometry.vectors import norm
+from cadpanel.geometry.seam_frames import SHIFT, seam_frames
+from cadpanel.geometry.vectors import dot, norm, unit
 from cadpanel.reference.model import Seam
 
 
-def along_seams(shapes: Sequence[Panel], seams: Sequence[Seam]) -> tuple[Array, Array]:
-    """(seams,) gaps along whole seams in mm, and kinks in radians."""
-    return gaps_and_kinks(PanelEdges.of(shapes), seams)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlongSeams:
+    """What is largest along each whole seam.
+
+    Attributes:
+        gap: (seams,) symmetric Hausdorff distance between the two edges, mm.
+        width: (seams,) of the gap the part in the skins' mean tangent plane and square to the seam, mm.
+        step: (seams,) the part along the skins' mean normal, which people see and feel, mm.
+        shift: (seams,) the part along the seam at its outermost corners, mm.
+        kink: (seams,) radians.
+    """
+
+    gap: Array
+    width: Array
+    step: Array
+    shift: Array
+    kink: Array
 
 
-def gaps_and_kinks(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, Array]:
-    """The same of panels whose edges are known."""
-    gaps, kinks = np.zeros(len(seams)), np.zeros(len(seams))
+def along_seams(edges: PanelEdges, seams: Sequence[Seam]) -> AlongSeams:
+    """How panels whose edges are known meet along whole seams."""
+    gap, width, step, shift, kink = np.zeros((5, len(seams)))
     for met in _batches(edges, seams):
-        gaps[met.index], kinks[met.index] = seam_gap(*met.curves(edges))
-    return gaps, kinks
+        first, second = met.curves(edges)
+        found = seam_gap(first, second)
+        gap[met.index], kink[met.index], width[met.index], step[met.index] = found
+        for backwards, way in ((False, 1), (True, -1)):
+            rows = np.flatnonzero(met.reversed == backwards)
+            shift[met.index[rows]] = _shifts(first.take(rows), second.take(rows), way)
+    return AlongSeams(gap=gap, width=width, step=step, shift=shift, kink=kink)
+
+
+def _shifts(first: EndCurves, second: EndCurves, way: int) -> Array:
+    """(m,) how far the outermost corners lie apart along the seam; the second curves run `way` (1 or -1) along it.
+
+    Those between them are where patches of one panel meet without a kink: whether they are in line nobody sees.
+    """
+    one, other = first.corners, second.corners[:, ::way]
+    ends, others = one[:, [0, -1]], other[:, [0, -1]]
+    tangents = unit(one[:, [1, -1]] - one[:, [0, -2]]) + unit(other[:, [1, -1]] - other[:, [0, -2]])
+    frames = seam_frames(tangents, first.n[:, [0, -1]] + second.n[:, ::way][:, [0, -1]])
+    return np.asarray(np.abs(dot(ends - others, frames[:, :, SHIFT])).max(axis=1))
 
 
 def corner_gaps(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, ...]:

@@ -17,8 +17,7 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
     if settings.weights is not None:
         return True
     return bool(
-        measures.max_corner_gap <= settings.gap_tolerance
-        and measures.max_seam_gap <= settings.gap_tolerance
+        all((measures.gaps[what] <= allowed).all() for what, allowed in settings.gaps.items())
         and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
 

@@ -8,32 +8,33 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.holding import MARGIN, gap_price, held_within, seam_terms
+from cadpanel.fitting.methods.holding import MARGIN, gap_terms, held_within, prices, seam_terms, tighten
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
 from cadpanel.fitting.objective import HeldObjective, Objective
-from cadpanel.fitting.problem import Problem, SeamTerm
+from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
-from cadpanel.terms.arc_gap import ArcGap
+from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftTerm
+from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.term import HeldTerm
 
 # Before tolerances count, gaps and drifts weigh this much against the mean squared deviation: local fits of panels with
 # several bends scatter their corners by decimetres, and a few steps of a smooth problem gather them.
 _FIRST_GAP, _FIRST_DRIFT = 0.1, 1e-2
 _FIRST = Stopping(cost=1e-3, iterations=40)
-# Between the points that are held, arcs part a little further: they are held at this share of the tolerance.
-_ARC_SHARE = 0.82
-# How often seams are tightened where they part still further, up to which excess that is worth trying, and to which
-# share of the tolerance.
+# How often seams are tightened where they part still further, and up to which excess that is worth trying.
 _TIGHTENINGS = 8
 _NEARLY = 20.0
-_AIM = 0.99
+# What must be kept exceeds its limit beyond rounding.
+_FIRM = 1.0 + 1e-5
+_YIELDING = frozenset(limit.name for limit in LIMITS if limit.yields)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,51 +61,62 @@ class Concurrent(Method):
 def _hold_seams(
     problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
 ) -> Fitted:
-    gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
-    limits = problem.limits(settings, MARGIN)
-    gathered, iterations = _gather(problem, gaps, limits, start)
-    state = problem.state(gathered)
-    for gap in gaps:
-        gap.hold.weight[:] = 0.0
-        if isinstance(gap, ArcGap):
-            gap.straighten(state)
-            gap.hold.radius = _ARC_SHARE * gap.hold.radius
-    model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
+    limits = problem.named_limits(settings, MARGIN)
+    gathered, iterations = _gather(problem, settings, [term for _, term in limits], start)
+    allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
+    gaps = gap_terms(problem, allowed, problem.state(gathered))
+    named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in gaps), *limits]
+    model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
     found = held_within(problem, model, gathered, local=local, tell=progress)
     iterations += found.iterations
+    yielding = [term for name, term in limits if name in _YIELDING]
+    if found.excess > _FIRM and found.end.best.firm > _FIRM and yielding and found.stopped is not Stop.TOLD:
+        # What panels must keep to cannot be kept beside these, as with rulings that are all parallel between edges that
+        # are not: they give way with the gaps.
+        for term in yielding:
+            term.hold.gives_way = True
+        model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
+        found = held_within(problem, model, gathered, local=local, tell=progress)
+        iterations += found.iterations
     stopped = found.stopped
     # Measure whole seams, tighten those that are too wide, go on.
     for tightening in range(_TIGHTENINGS + 1):
         if stopped not in (Stop.HELD, Stop.STEP_LIMIT):
             break
-        seam_gap, _ = along_seams(panel_shapes(problem, found.unknowns), problem.met)
-        excess = seam_gap / settings.gap_tolerance
-        if excess.max(initial=0.0) <= 1.0:
+        excess = _excess(problem, found.unknowns, settings)
+        largest = max((float(over.max(initial=0.0)) for over in excess.values()), default=0.0)
+        if largest <= 1.0:
             break
-        if tightening == _TIGHTENINGS or not excess.max() < _NEARLY:
+        if tightening == _TIGHTENINGS or not largest < _NEARLY:
             stopped = Stop.OPEN_BETWEEN
             break
-        share = np.where(excess > 1.0, _AIM / excess, 1.0)
-        for gap in gaps:
-            if isinstance(gap, ArcGap):
-                gap.straighten(problem.state(found.unknowns))
-            gap.hold.tighten(share[gap.seams.index])
+        tighten([term for _, term in named], problem.state(found.unknowns), excess)
         found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
         iterations += found.iterations
         stopped = found.stopped
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
-    price = gap_price(problem, model, found, settings.gap_tolerance) if stopped is Stop.HELD else None
-    return Fitted(found.unknowns, iterations, stopped, gap_price=price)
+    costs = prices(problem, named, found, settings.gaps | settings.allowed) if stopped is Stop.HELD else {}
+    return Fitted(found.unknowns, iterations, stopped, prices=costs)
 
 
-def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
+def _excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
+    """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
+    met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
+    measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
+    excess = {what: measured[what] / most for what, most in settings.gaps.items()}
+    return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
+
+
+def _gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
     """A few steps towards closed seams, and how many."""
-    firm = [(limit, limit.hold.weight) for limit in limits if isinstance(limit, DriftTerm)]
+    gaps = seam_terms(problem, max(settings.gaps.values()))
     for gap in gaps:
         gap.hold.weight[:] = _FIRST_GAP
+    weighed = [limit for limit in limits if limit.hold.weight.any()]
+    firm = [(limit, limit.hold.weight) for limit in weighed if isinstance(limit, DriftTerm)]
     for limit, _ in firm:
         limit.hold.weight = np.full_like(limit.hold.weight, _FIRST_DRIFT)
-    model = Objective(problem, [problem.deviation, *gaps, *limits], coupled=True)
+    model = Objective(problem, [problem.deviation, *gaps, *weighed], coupled=True)
     solution = levenberg_marquardt(model, start, _FIRST)
     for limit, weight in firm:
         limit.hold.weight = weight
@@ -114,7 +126,7 @@ def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTer
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     """RMS deviation, and a large penalty for gaps and limits that do not hold."""
     state = problem.state(unknowns)
-    held: list[HeldTerm] = [*seam_terms(problem, settings.gap_tolerance), *problem.limits(settings)]
+    held: list[HeldTerm] = [*gap_terms(problem, settings.gaps, state), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = problem.rms(float(problem.deviation.cost(state).sum()))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

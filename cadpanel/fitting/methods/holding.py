@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from cadpanel.arrays import Array
@@ -10,6 +12,17 @@ from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
 from cadpanel.solver.interior_point import Ended, Limits
+from cadpanel.terms.arc_gap import ArcGap
+from cadpanel.terms.corner_gap import CornerGap
+from cadpanel.terms.edge_gap import MixedGap
+from cadpanel.terms.limits.kink import Kink, KinkTerm
+from cadpanel.terms.outermost_gap import OutermostGap
+from cadpanel.terms.parted_gap import PartedGap
+from cadpanel.terms.parts import PARTS
+from cadpanel.terms.state import State
+from cadpanel.terms.term import HeldTerm
+
+GapTerm = SeamTerm | PartedGap
 
 # Gaps and drifts are held a little inside what the user allows, so that rounding in a file cannot break the promise.
 MARGIN = 1e-3
@@ -17,6 +30,10 @@ MARGIN = 1e-3
 # the local fits are nearly exact: what comes then is no approximation of the reference any more.
 _MOST_MULTIPLE = 5.0
 _MOST_SHARE = 0.05
+# Between the points that are held, arcs part a little further: they are held at this share of the tolerance.
+_ARC_SHARE = 0.82
+# Where seams part still further they are held at a smaller one, such that they come to this share of it.
+_AIM = 0.99
 # A panel that deviates by no more than this share of its length, RMS, is exact.
 _EXACT = 1e-8
 
@@ -26,23 +43,77 @@ def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
     return [*problem.corner_gaps(tolerance), *problem.curve_gaps(tolerance)]
 
 
-def gap_price(problem: Problem, model: HeldObjective, found: HeldSolution, tolerance: float) -> float:
-    """By how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order.
+def gap_terms(problem: Problem, gaps: Mapping[str, float], state: State) -> list[GapTerm]:
+    """Everything that holds gaps, and their parts, within what is allowed (mm, see `FitSettings.gaps`).
+
+    Args:
+        problem: the panels.
+        gaps: what is allowed.
+        state: in whose seams' directions parts are looked at.
+    """
+    terms: list[GapTerm] = [*seam_terms(problem, gaps["gap"])] if "gap" in gaps else []
+    for term in terms:
+        term.hold.weight[:] = 0.0
+        if isinstance(term, ArcGap):
+            term.straighten(state)
+            term.hold.radius = _ARC_SHARE * term.hold.radius
+    parts = {part: gaps[part] / problem.place.length for part in PARTS if part in gaps}
+    for batch in problem.seams if parts else ():
+        ends = OutermostGap(batch, problem.place, problem.layout, tolerance=1.0)
+        terms.append(PartedGap(ends, state, parts))
+        if not (batch.straight(0) and batch.straight(1)) and set(parts) & set(PARTS[: MixedGap.parts]):
+            between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
+            terms.append(PartedGap(between, state, parts, share=_ARC_SHARE))
+    return terms
+
+
+def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]) -> None:
+    """Hold the seams that are measured to exceed what is allowed more tightly, looking at them where they are now.
+
+    Args:
+        terms: those of `gap_terms` and of limits; what is measured at corners alone stays as it is held.
+        state: where.
+        excess: (seams,) what was measured along seams over what is allowed, of the gap, its parts and kinks.
+    """
+    shares = {what: np.where(over > 1.0, _AIM / over, 1.0) for what, over in excess.items()}
+    for term in terms:
+        if isinstance(term, PartedGap | ArcGap):
+            term.straighten(state)
+        if isinstance(term, PartedGap):
+            term.hold.tighten(np.min([shares[part] for part in term.parts], axis=0)[term.seams.index])
+        elif isinstance(term, KinkTerm):
+            term.hold.tighten(shares[Kink.name][term.seams.index])
+        elif isinstance(term, CornerGap | ArcGap | MixedGap):
+            term.hold.tighten(shares["gap"][term.seams.index])
+
+
+def prices(
+    problem: Problem, named: Sequence[tuple[str, HeldTerm]], found: HeldSolution, allowed: Mapping[str, float]
+) -> dict[str, float]:
+    """By how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first order.
 
     A multiplier w is the weight of |v|^2 / 2 that holds the vector v at its distance r: where all distances grow by a
     share, the cost falls by the sum of all w r^2 times that share (the envelope theorem).
 
     Args:
         problem: the panels.
-        model: what was held.
+        named: what was held, in the order of the solution's multipliers, each with the name of what it holds.
         found: where it ended.
-        tolerance: of gaps, mm.
+        allowed: of each name, in the units in which it is asked for.
     """
-    pairs = zip(model.held, found.end.multipliers, strict=True)
-    pull = sum(float(np.sum(weight * term.hold.radius**2)) for term, weight in pairs if term.hold.gives_way)
-    cost = float(problem.deviation.cost(problem.state(found.unknowns)).sum())
-    rms = problem.rms(cost)
-    return problem.place.length * pull / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
+    state = problem.state(found.unknowns)
+    rms = problem.rms(float(problem.deviation.cost(state).sum()))
+    pulls: dict[str, float] = dict.fromkeys(allowed, 0.0)
+    for (name, term), weight in zip(named, found.end.multipliers, strict=True):
+        if isinstance(term, PartedGap):  # each part by its share of |v|^2
+            for part, lengths in zip(term.parts, np.moveaxis(term.vectors(state), 2, 0), strict=True):
+                pulls[part] += float(np.sum(weight * lengths**2))
+        elif not term.hold.one_sided:
+            pulls[name] += float(np.sum(weight * term.hold.radius**2))
+    if rms <= _EXACT:
+        return dict.fromkeys(pulls, 0.0)
+    scale = problem.place.length / (problem.panels * rms)
+    return {name: scale * pull / allowed[name] for name, pull in pulls.items()}
 
 
 def held_within(

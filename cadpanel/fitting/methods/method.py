@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.problem import Problem
@@ -25,8 +25,8 @@ class Fitted:
         stopped: why no better ones were looked for.
         agreed: how many of the starts, the first included, ended within 1 % of the best deviation and held.
         starts: how many starts were made.
-        gap_price: by how much one mm more of gap tolerance would lower the RMS deviation, mm, to first order; None
-            where no gap is held at its tolerance.
+        prices: by how much the RMS deviation, mm, would fall for one unit more of what is held, by its name; empty
+            where nothing is held at its tolerance.
     """
 
     unknowns: Array
@@ -34,7 +34,7 @@ class Fitted:
     stopped: Stop
     agreed: int = 1
     starts: int = 1
-    gap_price: float | None = None
+    prices: Mapping[str, float] = field(default_factory=dict)
 
 
 class Method(ABC):

@@ -6,11 +6,17 @@ One that the user sets has a field in `FitSettings` besides, `name: float = limi
 from __future__ import annotations
 
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
+from cadpanel.terms.limits.evenness import Evenness
 from cadpanel.terms.limits.flange_width import FlangeWidth
+from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.seam_turn import SeamTurn
 
 LIMITS: tuple[Limit, ...] = (
+    SeamTurn(),
+    Evenness(),
+    Kink(),
     DriftAlong(),
     DriftAcross(),
     MinRadius(),

@@ -20,7 +20,7 @@ from cadpanel.terms.term import HeldTerm
 # Weight of a squared drift against the mean squared deviation: 100 mm of drift count like 1 mm of deviation.
 LEAST_PULL = 1e-4
 # Corners slide far along their seams on the way to a solution: damped as gaps are, they would only crawl.
-_TIES = 1e-3
+TIES = 1e-3
 
 
 class CornerDrift(Limit):
@@ -47,7 +47,7 @@ class DriftAlong(CornerDrift):
     name = "drift_along"
     what = "drift along the strip"
     way = "along"
-    default = 0.05
+    default = 0.02
     help = "How far corners may move along the strip, of the length."
     rows = (
         Row("max_drift_along", "Largest drift along, mm", "{:.1f}"),
@@ -105,7 +105,7 @@ class DriftTerm(HeldTerm):
         self._rows = np.arange(len(limit))[:, None]
         held = self.limited.corners.shape[1]
         self.blocks, self.pair, self.panels = (np.arange(len(limit)),), None, len(limit)
-        self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, ties=_TIES)
+        self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, ties=TIES)
 
     def vectors(self, state: State) -> Array:
         """(panels, L, d) the part of the corners' drift that is limited."""

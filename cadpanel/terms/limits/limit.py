@@ -14,14 +14,16 @@ from typing import Protocol
 
 import numpy as np
 
-from cadpanel.arrays import Array, BoolArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.geometry.panel import Panel
+from cadpanel.reference.across_seams import AcrossSeams
 from cadpanel.setting import Option, Range, setting
 from cadpanel.terms.outline import Outline
 from cadpanel.terms.placement import Placement
+from cadpanel.terms.seams import SeamBatch
 from cadpanel.terms.term import HeldTerm
 
 
@@ -48,6 +50,21 @@ class Panels(Protocol):
         """(panels,) the panels' lengths in units of the solver's length."""
         ...
 
+    @property
+    def seams(self) -> tuple[SeamBatch, ...]:
+        """Who meets whom, in batches of seams that are alike."""
+        ...
+
+    @property
+    def across(self) -> AcrossSeams:
+        """The lines that go on across seams."""
+        ...
+
+    @property
+    def pair_of(self) -> IntArray:
+        """(seams,) which pair of coupled panels meets there."""
+        ...
+
 
 class Measured(Protocol):
     """What a limit sees of panels that are measured; `fitting.measures.fit.Measures` is such a thing."""
@@ -60,6 +77,26 @@ class Measured(Protocol):
     @property
     def lengths(self) -> Array:
         """(panels,) the panels' lengths, mm."""
+        ...
+
+    @property
+    def turn(self) -> Array:
+        """(panels,) of the edge that turns most from the drawn one, radians."""
+        ...
+
+    @property
+    def seam_panels(self) -> IntArray:
+        """(seams, 2) which panels meet there."""
+        ...
+
+    @property
+    def uneven(self) -> Array:
+        """(seams,) how far a seam's corners lie off the middle between those before and after them, mm."""
+        ...
+
+    @property
+    def kink(self) -> Array:
+        """(seams,) radians."""
         ...
 
     @property
@@ -94,12 +131,14 @@ class Limit(ABC):
     Attributes:
         name: of the setting, as `FitSettings`, report and command line call it.
         what: the setting in messages, "least radius".
-        default: in mm, or as a share of the panel's length.
+        default: in mm or degrees, or as a share of the panel's length.
         least, most: what may be asked for.
-        percent: whether it is a share of the panel's length, which people read in percent; else it is in mm.
+        percent: whether it is a share of the panel's length, which people read in percent.
+        unit: of what is no share, "mm" or "degrees".
         help: of the command line's option.
         asked: whether it is a setting at all, or always the default.
         at_least: whether the measure must not fall below the limit; else it must not exceed it.
+        yields: whether it gives way where what panels must keep to cannot be kept with it.
         remedy: what to allow where it cannot be kept, "more drift".
         rows: of report and tables; the last is what the limit holds, its worst over all panels.
         weight: which of the paper's weights rules its terms where weights are given instead of a tolerance.
@@ -111,9 +150,11 @@ class Limit(ABC):
     least: float = 0.0
     most: float = math.inf
     percent: bool = False
+    unit: str = "mm"
     help: str = ""
     asked: bool = True
     at_least: bool = False
+    yields: bool = False
     remedy: str
     rows: tuple[Row, ...]
     weight: str | None = None
@@ -183,9 +224,9 @@ class Limit(ABC):
 
 def limit_setting(limit: type[Limit]) -> float:
     """The field of `FitSettings` that asks for a limit."""
-    what = Range(what=limit.what, least=limit.least, most=limit.most, unit="" if limit.percent else " mm")
+    what = Range(what=limit.what, least=limit.least, most=limit.most, unit="" if limit.percent else f" {limit.unit}")
     if not limit.percent:
-        return setting(limit.default, within=what, option=Option(metavar="MM", help=limit.help))
+        return setting(limit.default, within=what, option=Option(metavar=limit.unit.upper(), help=limit.help))
     return setting(
         limit.default,
         within=what,

@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods import local
 from cadpanel.fitting.methods.concurrent import Concurrent
 from cadpanel.fitting.methods.local import Local, fit_local
@@ -70,7 +71,7 @@ every_method = pytest.mark.parametrize("method", ["local", "two_stage", "concurr
 
 
 def test_concurrent_holds_the_tolerance_at_corners_and_along_whole_seams():
-    result = fitted()
+    result = fitted(gap_tolerance=1.0)
     assert result.tolerance_met
     assert result.shortfall() is None
     assert result.measures.max_corner_gap <= 1.0
@@ -81,7 +82,7 @@ def test_concurrent_holds_the_tolerance_at_corners_and_along_whole_seams():
 
 def test_concurrent_holds_the_drift_limits():
     m = fitted().measures
-    assert np.all(m.drift_along <= 0.05 * m.lengths)
+    assert np.all(m.drift_along <= 0.02 * m.lengths)
     assert np.all(m.drift_across <= 0.02 * m.lengths)
 
 
@@ -220,10 +221,14 @@ def test_a_local_fit_that_runs_out_of_steps_says_so(monkeypatch):
     assert Local().fit(problem, starts, FitSettings()).stopped is Stop.STEP_LIMIT
 
 
-def test_curves_that_part_between_the_points_that_are_held_are_no_tolerance_held(monkeypatch):
-    seams = lambda _, met: (np.full(len(met), 50.0), np.zeros(len(met)))  # noqa: E731 - as if arcs parted far
-    monkeypatch.setattr("cadpanel.fitting.methods.concurrent.along_seams", seams)
-    how = FitSettings(gap_tolerance=2.0)
+@pytest.mark.parametrize("what", ["gap", "width", "step", "shift"])
+def test_curves_that_part_between_the_points_that_are_held_are_no_tolerance_held(monkeypatch, what):
+    def parted(edges, met):
+        """As if arcs parted far."""
+        return replace(along_seams(edges, met), **{what: np.full(len(met), 100.0)})
+
+    monkeypatch.setattr("cadpanel.fitting.methods.concurrent.along_seams", parted)
+    how = FitSettings(gap_tolerance=2.0) if what == "gap" else FitSettings()
     problem, starts = posed(lip(2), how)
     found = Concurrent().fit(problem, [fit_local(problem, lip(2), starts).unknowns], how)
     assert found.stopped is Stop.OPEN_BETWEEN

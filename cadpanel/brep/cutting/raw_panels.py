@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.cutting.ways import Drawn, cut_surfaces
 from cadpanel.brep.faces.sampling import sample_panels
-from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.face_choice import require_faces, select_faces
 from cadpanel.brep.files.model import Model, NamedShape, Products
 from cadpanel.brep.files.names import unique_names
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
@@ -65,13 +65,16 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
     """The parts of a model as panels, each with those of its faces that are chosen."""
     names = model.panel_names()
     if settings.faces is None:
+        require_faces(model)
         shapes = [NamedShape(name, part.shape) for name, part in zip(names, model.parts, strict=True) if name]
-        curves = names.count("")
+        curves = sum(not part.face_labels and not part.unreadable for part in model.parts)
         many = "1 loose curve, which is no panel" if curves == 1 else f"{curves} loose curves, which are no panels"
         notes = [f"'{model.source}' holds {many}."] if curves else []
         panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
         return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
-    chosen, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
+    chosen, mended = skin_faces(
+        select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
+    )
     parts = sorted({face.source.part for face in chosen})
     shapes = [
         NamedShape(names[part], compound_of(face.source.face for face in chosen if face.source.part == part))
@@ -84,7 +87,9 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
 
 def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) -> RawReference:
     """The chosen faces of a model, cut into panels."""
-    skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
+    skin, mended = skin_faces(
+        select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
+    )
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
     cut = cut_surfaces(model, surfaces, settings, drawn)
     shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]

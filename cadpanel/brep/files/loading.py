@@ -200,8 +200,8 @@ def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] 
             f"'{source}' reaches {np.abs(bounds).max():.3g} mm from the origin, farther than millimetres can be told "
             "apart: look for a stray shape or a wrong unit."
         )
-    middle = 0.5 * (bounds[:3] + bounds[3:])
-    if np.linalg.norm(middle) < FAR:
+    middle, half = 0.5 * (bounds[:3] + bounds[3:]), 0.5 * (bounds[3:] - bounds[:3])
+    if np.linalg.norm(middle) < FAR and not np.linalg.norm(half) <= FAR < np.linalg.norm(np.abs(middle) + half):
         return None
     x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE + 0.0).tolist()  # a note that says -0 makes one wonder
     return (x, y, z)

@@ -12,6 +12,7 @@ import stat
 from pathlib import Path
 
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings, file_named
 
 READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242), IGES, .brep and Rhino .3dm"
 # The first and last part of a file in which its beginning and end are looked for.
@@ -66,6 +67,23 @@ def contents(path: Path, most: int = -1) -> bytes:
     if not text.strip():
         raise ReferenceFileError(f"'{path.name}' is empty: export the reference again.")
     return text
+
+
+def require_files(reference: str | Path, settings: ReferenceSettings) -> None:
+    """Refuse files that are not there, before anybody waits for the kernel to be loaded.
+
+    Args:
+        reference: the file.
+        settings: with the file that is read beside it.
+
+    Raises:
+        ReferenceFileError: as `contents` says.
+        SettingsError: the name is none.
+    """
+    path = file_named(reference, "reference")
+    for file in (path, settings.beside(path)):
+        if file is not None:
+            contents(file, MARGIN_BYTES)
 
 
 def refuse_format(path: Path, head: bytes) -> ReferenceFileError:

@@ -7,10 +7,12 @@ face goes through the kernel's splitter. Either way every piece is held against 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.gp import gp_Pln
-from OCP.TopoDS import TopoDS_Face
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array, BoolArray, IntArray
@@ -18,20 +20,27 @@ from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.face_patch import Patch, patch_of
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import breaks_of
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
-from cadpanel.brep.splitting.split_by_pcurves import slice_patch
+from cadpanel.brep.splitting.split_along_edges import split_along
+from cadpanel.brep.splitting.split_by_pcurves import edge_across, slice_patch
 from cadpanel.brep.splitting.splitter import split_faces
 from cadpanel.errors import ReferenceFileError
 
 # Lines of the grid on which a face is evaluated to find where planes cross it, across and along the strip.
 LINES_ACROSS = 33
 LINES_ALONG = 129
+# Lines in a span of a spline that lies between two of them, and as which part of the range two of them are one.
+LINES_A_SPAN = 17
+SAME_LINE = 1e-9
 NEWTON_STEPS = 30
 # A crossing has been found when its point is this close to the plane, mm.
 ON_PLANE = 1e-7
 # A border this close to a plane lies in it and is not cut, mm.
 IN_PLANE = 0.01
+# The range of a trimmed face reaches over its border, and so do the curves across it: up to so many times the reach.
+OVER_THE_BORDER = 1.5
 # How far a piece may reach through a plane that bounds it, mm.
 THROUGH = 0.02
 # How often a point's place among the planes is corrected by the planes themselves.
@@ -49,11 +58,7 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
         what = f"face {face.number} of '{source}'"
         first, last = _reached(face.patch, cuts)
         sliced = _sliced(face.patch, cuts, first, last)
-        if sliced is None:
-            planes = [_plane_face(cuts, index) for index in range(first, last)]
-            pieces = split_faces([face.patch.face], planes, what).faces[0] if planes else (face.patch.face,)
-            sliced = [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
-        for place, piece in sliced:
+        for place, piece in _split(face.patch, cuts, first, last, what) if sliced is None else sliced:
             groups[place].append(piece)
     empty = next((index for index, group in enumerate(groups) if not group), None)
     if empty is not None:
@@ -66,6 +71,39 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
             "or cuts that lie on the surface."
         )
     return groups
+
+
+def _split(patch: Patch, cuts: Cuts, first: int, last: int, what: str) -> list[tuple[int, TopoDS_Face]]:
+    """The pieces of a patch that the kernel splits off by planes, each with its place.
+
+    Where it misses a plane, as on long tapered faces by a tenth of a millimetre and more, it is given the curves along
+    which the planes cross the patch.
+
+    Raises:
+        ReferenceFileError: it leaves the patch uncut either way.
+    """
+    if first == last:
+        return [(_place_of_piece(patch.face, cuts, what), patch.face)]
+    planes = [_plane_face(cuts, index) for index in range(first, last)]
+    try:
+        pieces = split_faces([patch.face], planes, what).faces[0]
+        return [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
+    except ReferenceFileError:
+        curves = _curves(patch, cuts, first, last)
+        if curves is None:
+            raise
+    pieces = split_along([patch.face], curves, what).faces[0]
+    return [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
+
+
+def _curves(patch: Patch, cuts: Cuts, first: int, last: int) -> list[TopoDS_Edge] | None:
+    """The curves along which planes cross the surface over a patch's range; None where one does not cross all of it."""
+    normals = cuts.normals[first:last]
+    axis = _axis_through(patch, normals)
+    across = _lines_across(patch, axis)
+    reach = OVER_THE_BORDER * cuts.reach[first:last]
+    found = _crossings(patch, axis, across, cuts.origins[first:last], normals, reach)
+    return None if found is None else [edge_across(patch, axis, across, own) for own in found[1]]
 
 
 def places_of(points: Array, cuts: Cuts) -> IntArray:
@@ -99,8 +137,8 @@ def _sliced(patch: Patch, cuts: Cuts, first: int, last: int) -> list[tuple[int, 
         return None
     chosen = slice(first, last)
     origins, normals, reach = cuts.origins[chosen], cuts.normals[chosen], cuts.reach[chosen]
-    across = np.linspace(0.0, 1.0, LINES_ACROSS)
     axis = _axis_through(patch, normals)
+    across = _lines_across(patch, axis)
     crossings = _crossings(patch, axis, across, origins, normals, reach)
     if crossings is None:
         return None
@@ -133,6 +171,19 @@ def _axis_through(patch: Patch, normals: Array) -> int:
         for vectors in (along_u, along_v)
     ]
     return int(through[1] > through[0])
+
+
+def _lines_across(patch: Patch, axis: int) -> Array:
+    """(w,) rising parts of the other parameter's range at which cuts are solved for: even ones, closer in short spans.
+
+    A spline may do in a hundredth of its range what it does in all the rest, as where it begins on another one's edge.
+    """
+    even = np.linspace(0.0, 1.0, LINES_ACROSS)
+    low, high = patch.bounds[1 - axis]
+    breaks = np.clip((breaks_of(patch.surface, 1 - axis) - low) / (high - low), 0.0, 1.0)
+    short = [pair for pair in pairwise(breaks.tolist()) if SAME_LINE < pair[1] - pair[0] < even[1]]
+    lines = np.unique(np.concatenate([even, *(np.linspace(first, last, LINES_A_SPAN) for first, last in short)]))
+    return np.asarray(lines[np.concatenate([np.diff(lines) > SAME_LINE, [True]])])
 
 
 def _rises(patch: Patch, axis: int, normal: Array) -> bool:

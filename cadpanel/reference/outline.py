@@ -105,6 +105,33 @@ def find_outline(panel: RawPanel, source: str, tolerance: float = TOUCH_TOLERANC
     return Outline(sides=sides, face_signs=tuple(walk.signs[face] for face in range(len(panel.faces))))
 
 
+def find_loops(panel: RawPanel, source: str, tolerance: float, count: int) -> tuple[tuple[Array, ...], ...]:
+    """The closed lines that bound a panel's faces, each as the edges (count, 3) that follow each other round it, mm.
+
+    None where the faces do not hang together, or their edges do not close.
+
+    Args:
+        panel: as sampled.
+        source: the file's name, for messages.
+        tolerance: gaps between the faces up to this width are bridged, mm.
+        count: of even points on each edge.
+
+    Raises:
+        OutlineError: a face has no area.
+        PanelError: there are no faces.
+    """
+    check_faces(panel, source)
+    close = _touch_tolerance(panel)
+    even = np.linspace(0.0, 1.0, count)
+    for bridged in dict.fromkeys((close, max(close, min(tolerance, BRIDGED_PART * narrowest(panel))))):
+        whole = panel_edges(panel, bridged)
+        for edges in (whole, split_at_vertices(whole, bridged)):
+            walk = _walk_along(edges, panel, bridged)
+            if not walk.loose and len(walk.signs) == len(panel.faces):
+                return tuple(tuple(edge.at(even * edge.length)[0] for edge in loop) for loop in walk.loops)
+    return ()
+
+
 def bridged_gap(panel: RawPanel, tolerance: float) -> float:
     """Width of the widest gap between faces of a panel that its outline bridges, mm.
 

@@ -174,10 +174,10 @@ def _skin(model: Model, how: ReferenceSettings) -> tuple[tuple[SkinFace, ...], t
     """All faces, those of solids, too."""
     faces = model.faces() if how.faces is None else select_faces(model, how.faces)
     if not faces:
-        if not model.curves():
+        if not model.curves() and not model.unreadable():
             raise ReferenceFileError(f"'{model.source}' holds neither faces nor curves.")
         return (), ()
-    return skin_faces(faces, model.source, how.seam_tolerance)
+    return skin_faces(faces, model.source, how.seam_tolerance, chosen=how.faces is not None)
 
 
 def _face(face: SkinFace) -> FaceSurvey:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
@@ -43,6 +44,7 @@ def compare(
 def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSettings, shown: Steps) -> ComparisonModel:
     shown.begin("Read reference", file.name)
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
+    require_files(file, how)
     start_reader()
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.records.table1 import comparison_record

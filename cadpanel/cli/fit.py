@@ -8,6 +8,7 @@ from pathlib import Path
 
 import typer
 
+from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.interrupt import first_interrupt_ends
@@ -65,6 +66,7 @@ def _run(
     """Read, fit, build, write and verify; the report, and what the tolerance lacks."""
     shown.begin(_READ, file.name)
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
+    require_files(file, how)
     start_reader()
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.reference.settings import ReferenceSettings
@@ -26,6 +27,7 @@ def inspect(
 
     Exit codes: 0 the file is read; 2 refused.
     """
+    require_files(file, how)
     start_reader()
     # Here, not above: neither help nor a refusal should wait for the CAD kernel.
     from cadpanel.brep.survey import survey

@@ -10,7 +10,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.geometry.polyline import STENCIL, arc_length, arc_lengths, distances_to_curves, interpolate
-from cadpanel.geometry.vectors import norm
+from cadpanel.geometry.vectors import cross, norm, unit
 from cadpanel.reference.model import RawPanel
 
 # Two edges coincide when they do at this many evenly spread points.
@@ -19,6 +19,8 @@ PROBES = 9
 INNER = np.array([0.25, 0.5, 0.75])
 # A gap narrower than this is not measured any closer, mm.
 SEEN = 0.01
+# Faces that fold back by more than this where they touch meet in a knife edge, as at a wing's trailing edge, degrees.
+KNIFE_EDGE = 135.0
 # Points of a piece that is cut out of an edge.
 PIECE_POINTS = 33
 # Neighbouring points closer than this part of the edge's length count as one.
@@ -65,12 +67,14 @@ class Contact:
         agree: whether their normals there lie on the same side.
         gap: how far apart the edges lie, mm.
         length: of the shorter edge, mm.
+        ends: (2, 3) of the first face's edge, mm.
     """
 
     faces: tuple[int, int]
     agree: bool
     gap: float
     length: float
+    ends: Array
 
 
 def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
@@ -93,12 +97,15 @@ def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
     return edges
 
 
-def free_edges(edges: Sequence[Edge], tolerance: float) -> tuple[list[Edge], list[Contact]]:
+def free_edges(
+    edges: Sequence[Edge], tolerance: float, knives_of: RawPanel | None = None
+) -> tuple[list[Edge], list[Contact]]:
     """Separate the edges that no other face shares, from end to end, from those that one does.
 
     Args:
         edges: all edges of one panel, in any order and direction.
         tolerance: how far shared edges may lie apart, mm.
+        knives_of: the panel, where edges along which its faces fold back are free; None where they are shared.
 
     Returns:
         The free edges, and one contact for each pair of edges that coincide.
@@ -114,7 +121,7 @@ def free_edges(edges: Sequence[Edge], tolerance: float) -> tuple[list[Edge], lis
     contacts, shared = [], set()
     for first, second in candidates:
         contact = _coincide(edges[first], edges[second], tolerance)
-        if contact is not None:
+        if contact is not None and not (knives_of and _folds_back(edges[first], edges[second], knives_of)):
             contacts.append(contact)
             shared |= {first, second}
     return [edge for index, edge in enumerate(edges) if index not in shared], contacts
@@ -152,8 +159,26 @@ def _coincide(first: Edge, second: Edge, tolerance: float) -> Contact | None:
             agree = bool(np.sum(normals * other_normals[order]) > 0.0)
             # Points may lie beside each other along the edges only.
             gap = apart if apart <= SEEN else _gap(first, second)
-            return Contact((first.face, second.face), agree, gap, min(first.length, second.length))
+            return Contact(
+                (first.face, second.face), agree, gap, min(first.length, second.length), first.points[[0, -1]]
+            )
     return None
+
+
+def _folds_back(first: Edge, second: Edge, panel: RawPanel) -> bool:
+    """Whether the surface turns back where it goes over two edges that coincide."""
+    ways = [_into(edge, panel.faces[edge.face].points) for edge in (first, second)]
+    return bool(ways[0] @ ways[1] > np.cos(np.radians(180.0 - KNIFE_EDGE)))
+
+
+def _into(edge: Edge, samples: Array) -> Array:
+    """(3,) the way from the middle of an edge into its face, square to the edge."""
+    middle = len(edge.points) // 2
+    along = edge.points[middle + 1] - edge.points[middle - 1]
+    way = unit(cross(edge.normals[middle], along))
+    offsets = samples - edge.points[middle]
+    nearest = offsets[norm(offsets).argmin()]
+    return np.asarray(way if way @ nearest >= 0.0 else -way)
 
 
 def _gap(first: Edge, second: Edge) -> float:

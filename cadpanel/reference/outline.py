@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import OutlineError
 from cadpanel.geometry.polyline import end_tangents, interpolate
 from cadpanel.geometry.vectors import norm, unit
@@ -105,6 +105,33 @@ def find_outline(panel: RawPanel, source: str, tolerance: float = TOUCH_TOLERANC
     return Outline(sides=sides, face_signs=tuple(walk.signs[face] for face in range(len(panel.faces))))
 
 
+def find_loops(panel: RawPanel, source: str, tolerance: float, count: int) -> tuple[tuple[Array, ...], ...]:
+    """The closed lines that bound a panel's faces, each as the edges (count, 3) that follow each other round it, mm.
+
+    None where the faces do not hang together, or their edges do not close.
+
+    Args:
+        panel: as sampled.
+        source: the file's name, for messages.
+        tolerance: gaps between the faces up to this width are bridged, mm.
+        count: of even points on each edge.
+
+    Raises:
+        OutlineError: a face has no area.
+        PanelError: there are no faces.
+    """
+    check_faces(panel, source)
+    close = _touch_tolerance(panel)
+    even = np.linspace(0.0, 1.0, count)
+    for bridged in dict.fromkeys((close, max(close, min(tolerance, BRIDGED_PART * narrowest(panel))))):
+        whole = panel_edges(panel, bridged)
+        for edges in (whole, split_at_vertices(whole, bridged)):
+            walk = _walk_along(edges, panel, bridged)
+            if not walk.loose and len(walk.signs) == len(panel.faces):
+                return tuple(tuple(edge.at(even * edge.length)[0] for edge in loop) for loop in walk.loops)
+    return ()
+
+
 def bridged_gap(panel: RawPanel, tolerance: float) -> float:
     """Width of the widest gap between faces of a panel that its outline bridges, mm.
 
@@ -133,22 +160,34 @@ def _walk(panel: RawPanel, tolerance: float) -> _Walk:
 
 
 def _walk_within(panel: RawPanel, tolerance: float) -> _Walk:
-    """Walk round a panel; edges are parted where others end on them only where it is not whole without."""
-    edges = panel_edges(panel, tolerance)
-    for parted in (False, True):
-        free, contacts = free_edges(split_at_vertices(edges, tolerance) if parted else edges, tolerance)
-        loops, loose = _chain(free, tolerance)
-        walk = _Walk(
-            tolerance=tolerance,
-            free=free,
-            contacts=contacts,
-            signs=_face_signs(len(panel.faces), contacts),
-            loops=loops,
-            loose=loose,
-        )
-        if walk.is_whole(panel):
-            break
-    return walk
+    """Walk round a panel.
+
+    Only where it is not whole without, edges are parted where others end on them, and then along knife edges.
+    """
+    whole = panel_edges(panel, tolerance)
+    walk = _walk_along(whole, panel, tolerance)
+    if walk.is_whole(panel):
+        return walk
+    parts = split_at_vertices(whole, tolerance)
+    walk = _walk_along(parts, panel, tolerance)
+    if walk.is_whole(panel):
+        return walk
+    parted = (_walk_along(edges, panel, tolerance, knives=True) for edges in (whole, parts))
+    return next((found for found in parted if found.is_whole(panel)), walk)
+
+
+def _walk_along(edges: Sequence[Edge], panel: RawPanel, tolerance: float, *, knives: bool = False) -> _Walk:
+    """Walk round a panel; edges along which it folds back are joined, or are free as knife edges."""
+    free, contacts = free_edges(edges, tolerance, panel if knives else None)
+    loops, loose = _chain(free, contacts, tolerance)
+    return _Walk(
+        tolerance=tolerance,
+        free=free,
+        contacts=contacts,
+        signs=_face_signs(len(panel.faces), contacts),
+        loops=loops,
+        loose=loose,
+    )
 
 
 def least_edge(size: float) -> float:
@@ -183,8 +222,13 @@ def _face_signs(count: int, contacts: Sequence[Contact]) -> dict[int, float]:
     return signs
 
 
-def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], list[Array]]:
+def _chain(
+    edges: Sequence[Edge], contacts: Sequence[Contact], tolerance: float
+) -> tuple[list[list[Edge]], list[Array]]:
     """Chain edges into closed loops.
+
+    Where more than two meet in a point, as at a knife edge from one face to the next, those go on into each other whose
+    faces hang together there.
 
     Returns:
         The loops, each edge directed along its loop, and the points (3,) in which other than two edges meet;
@@ -194,7 +238,12 @@ def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], l
         return [], []
     ends = np.array([end for edge in edges for end in (edge.points[0], edge.points[-1])])
     near = norm(ends[:, None] - ends[None]) <= tolerance
-    nodes = near.argmax(axis=1).reshape(-1, 2).tolist()
+    numbers = near.argmax(axis=1)
+    for node in np.flatnonzero(np.bincount(numbers) > 2).tolist():
+        here = np.flatnonzero(numbers == node)
+        faces = [edges[end // 2].face for end in here.tolist()]
+        numbers[here] = _by_sheet(here, faces, [c for c in contacts if norm(c.ends - ends[node]).min() <= tolerance])
+    nodes = numbers.reshape(-1, 2).tolist()
     at_node: dict[int, list[int]] = {}
     for index, pair in enumerate(nodes):
         for node in pair:
@@ -216,6 +265,22 @@ def _chain(edges: Sequence[Edge], tolerance: float) -> tuple[list[list[Edge]], l
             node = nodes[index][1] if forwards else nodes[index][0]
         loops.append(loop)
     return loops, []
+
+
+def _by_sheet(here: IntArray, faces: Sequence[int], contacts: Sequence[Contact]) -> Array:
+    """Of the (k,) ends of edges in one point, for each the first whose face hangs together with its own there.
+
+    Args:
+        here: their numbers.
+        faces: of their edges.
+        contacts: of faces, along edges that end in the point.
+    """
+    sheets = {face: {face} for face in faces}
+    for contact in contacts:
+        one, other = (sheets.setdefault(face, {face}) for face in contact.faces)
+        joined = one | other
+        sheets.update(dict.fromkeys(joined, joined))
+    return np.array([next(end for end, own in zip(here, faces, strict=True) if own in sheets[face]) for face in faces])
 
 
 def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, tolerance: float) -> tuple[Side, ...]:

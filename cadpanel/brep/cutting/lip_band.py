@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import Akima1DInterpolator
 from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array
@@ -40,6 +40,7 @@ NEAR = 1.0
 # A piece lies in the band when this part of its area does, as points of the strip tell that lie around it.
 MOST = 0.9
 CLOUD_ACROSS, CLOUD_ALONG = 401, 201
+CLOUD_REACH = 3.0
 # What a border of the band leaves of a face is no panel's part where it is narrower than this many tolerances, or mm
 # where that is more; but no wider than this part of the band.
 SLIVER = 1.5
@@ -85,7 +86,7 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> t
     if faces is None:
         what = f"the surface of {surface.numbers} of '{source}' along its lip"
         pieces = _cut_along_curves(surface, sections, borders, what, tolerance)
-        faces = _within(pieces, surface, _cloud(sections, square), 0.5 * width, source)
+        faces = _within(pieces, surface, _cloud(sections, square, 0.5 * width), 0.5 * width, source)
     limit = min(SLIVER * max(tolerance, NEAR), SLIVER_PART * width)
     faces, moved = _without_slivers(faces, surface, limit, source)
     return _joined(faces, surface, source, tolerance), (*notes, *moved)
@@ -202,19 +203,20 @@ def _cut_along_curves(surface: Surface, sections: Sections, borders: Array, what
     curves = []
     for border in borders:
         points = np.array([section.at(border[[i]])[0] for i, section in enumerate(sections.sections)])
-        # Straight between two sections: a kink of the surface's outline must not make the curve swing.
-        curves.append(np.asarray(make_interp_spline(PLACES, points, k=1)(fine)))
+        curves.append(_between(PLACES, points, fine))
     landing = land(surface, curves, max(NEAR, NEAR_PART * sections.strip_length), tolerance)
     tools = [edge for edges in landing.edges for edge in edges]
     return split_along([face.patch.face for face in surface.faces], tools, what)
 
 
-def _cloud(sections: Sections, square: Sequence[Array]) -> tuple[Array, Array]:
-    """(m, 3) points all over the strip, and their (m,) distances from the lip's middle, square to it.
+def _cloud(sections: Sections, square: Sequence[Array], half: float) -> tuple[Array, Array]:
+    """(m, 3) points of the strip, and their (m,) distances from the lip's middle, square to it.
 
-    Between two sections they lie on straight lines of one distance.
+    Between two sections they lie on lines of one distance. They reach as far beyond the band as it is wide: what lies
+    farther off is nearest to the outermost of them.
     """
-    distances = np.linspace(min(own[0] for own in square), max(own[-1] for own in square), CLOUD_ACROSS)
+    low, high = min(own[0] for own in square), max(own[-1] for own in square)
+    distances = np.linspace(max(low, -CLOUD_REACH * half), min(high, CLOUD_REACH * half), CLOUD_ACROSS)
     lines = np.array(
         [
             section.at(np.interp(distances, own, section.length))
@@ -222,8 +224,18 @@ def _cloud(sections: Sections, square: Sequence[Array]) -> tuple[Array, Array]:
         ]
     )
     fine = np.linspace(0.0, 1.0, CLOUD_ALONG)
-    points = np.asarray(make_interp_spline(sections.parts, lines, k=1)(fine))
+    points = _between(sections.parts, lines, fine)
     return points.reshape(-1, 3), np.tile(distances, CLOUD_ALONG)
+
+
+def _between(parts: Array, points: Array, fine: Array) -> Array:
+    """What goes smoothly through points (n, ...) at (n,) parts of the strip's length, and a little beyond.
+
+    By Akima's curve, whose way at a point hangs on its neighbours only: a kink of the surface's outline does not make
+    it swing elsewhere.
+    """
+    found: Array = Akima1DInterpolator(parts, points, extrapolate=True)(fine)
+    return found
 
 
 def _within(pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: float, source: str) -> list[SkinFace]:

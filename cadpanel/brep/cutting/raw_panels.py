@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.cutting.ways import Drawn, cut_surfaces
 from cadpanel.brep.faces.sampling import sample_panels
-from cadpanel.brep.files.face_choice import select_faces
+from cadpanel.brep.files.face_choice import require_faces, select_faces
 from cadpanel.brep.files.model import Model, NamedShape, Products
 from cadpanel.brep.files.names import unique_names
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
@@ -20,7 +20,9 @@ from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
 from cadpanel.brep.skin.panel_cleanup import gap_notes, mend_panels
 from cadpanel.errors import PanelError, ReferenceFileError
-from cadpanel.reference.model import RawPanel
+from cadpanel.geometry.limits import LARGEST_COORDINATE
+from cadpanel.geometry.vectors import norm
+from cadpanel.reference.model import FaceSamples, RawPanel
 from cadpanel.reference.settings import ReferenceSettings
 
 # Panels sampled together: enough to share the overhead, few enough to take little memory.
@@ -65,18 +67,22 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
     """The parts of a model as panels, each with those of its faces that are chosen."""
     names = model.panel_names()
     if settings.faces is None:
+        require_faces(model)
         shapes = [NamedShape(name, part.shape) for name, part in zip(names, model.parts, strict=True) if name]
-        curves = names.count("")
+        curves = sum(not part.face_labels and not part.unreadable for part in model.parts)
         many = "1 loose curve, which is no panel" if curves == 1 else f"{curves} loose curves, which are no panels"
         notes = [f"'{model.source}' holds {many}."] if curves else []
         panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
         return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
-    chosen, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
+    chosen, mended = skin_faces(
+        select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
+    )
     parts = sorted({face.source.part for face in chosen})
     shapes = [
         NamedShape(names[part], compound_of(face.source.face for face in chosen if face.source.part == part))
         for part in parts
     ]
+    require_reach([face.samples for face in chosen], model.source)
     panels = _sampled(shapes, model.source)
     gaps = gap_notes(panels, model.source, settings.seam_tolerance)
     return RawReference(panels=panels, notes=(*model.notes, *mended, *gaps))
@@ -84,7 +90,10 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
 
 def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) -> RawReference:
     """The chosen faces of a model, cut into panels."""
-    skin, mended = skin_faces(select_faces(model, settings.faces), model.source, settings.seam_tolerance)
+    skin, mended = skin_faces(
+        select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
+    )
+    require_reach([face.samples for face in skin], model.source)
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
     cut = cut_surfaces(model, surfaces, settings, drawn)
     shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]
@@ -92,11 +101,27 @@ def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) 
     return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
 
 
+def require_reach(faces: Sequence[FaceSamples], source: str) -> None:
+    """Refuse a skin so large, or so far away, that no panel of it could be built.
+
+    Raises:
+        ReferenceFileError: saying how far it reaches.
+    """
+    reach = max((float(norm(edge).max()) for face in faces for edge in (face.points, *face.edges)), default=0.0)
+    if reach > LARGEST_COORDINATE:
+        raise ReferenceFileError(
+            f"The skin in '{source}' reaches {reach:.3g} mm from the middle of the model, and panels can be built "
+            f"within {LARGEST_COORDINATE:g} mm: look for a wrong unit, or choose faces that lie closer together."
+        )
+
+
 def _mended(
     products: Sequence[NamedShape], source: str, tolerance: float
 ) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
     """Sample panels as the file has them, and mend what can be; with notes."""
-    return mend_panels(_sampled(products, source), [product.shape for product in products], source, tolerance)
+    panels = _sampled(products, source)
+    require_reach([face for panel in panels for face in panel.faces], source)
+    return mend_panels(panels, [product.shape for product in products], source, tolerance)
 
 
 def _sampled(products: Iterable[NamedShape], source: str) -> tuple[RawPanel, ...]:

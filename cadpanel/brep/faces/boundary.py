@@ -11,7 +11,7 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_Line
 from OCP.TopAbs import TopAbs_REVERSED
-from OCP.TopoDS import TopoDS_Face
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.brep.faces.surface_batch import SurfaceBatch, kernel_values
@@ -135,9 +135,15 @@ def _curves(face: TopoDS_Face) -> Iterator[tuple[BRepAdaptor_Curve2d, float]]:
     The explorer turns edges round with their face, so that a face has its inside to the left of them all, seen from
     where its normals point.
     """
-    for edge in edges_of(face):
-        if not (BRep_Tool.Degenerated_s(edge) or BRep_Tool.IsClosed_s(edge, face)):
+    edges = edges_of(face)
+    for edge in edges:
+        if not (BRep_Tool.Degenerated_s(edge) or _is_seam(edge, face, edges)):
             yield BRepAdaptor_Curve2d(edge, face), -1.0 if edge.Orientation() == TopAbs_REVERSED else 1.0
+
+
+def _is_seam(edge: TopoDS_Edge, face: TopoDS_Face, edges: Sequence[TopoDS_Edge]) -> bool:
+    """Whether a face lies on both sides of an edge; of a piece that ends on what was a seam, it is the border."""
+    return bool(BRep_Tool.IsClosed_s(edge, face)) and sum(other.IsSame(edge) for other in edges) > 1
 
 
 def _edge(samples: _Samples, surfaces: SurfaceBatch, face: int, middle: Array, side: float, left: float) -> Edge:

@@ -10,6 +10,7 @@ import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.BRepLib import BRepLib
+from OCP.BRepTools import BRepTools
 from OCP.Geom import Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
 from OCP.GeomAbs import GeomAbs_Line
@@ -26,6 +27,8 @@ from cadpanel.brep.kernel.shapes import edges_of
 COARSE = 1e-3
 # How closely the new one is asked to follow the edge, mm; the kernel stays within some ten times that.
 FINE = 1e-5
+# A curve that lies farther off another one than this part of the face's range is no better place for the same border.
+ELSEWHERE = 0.25
 # Points of an edge at which that is looked at.
 CHECKED_POINTS = 65
 
@@ -52,7 +55,7 @@ def _sharpen(edge: TopoDS_Edge, face: TopoDS_Face) -> None:
     # The kernel's tolerance may promise more than is true, or be that of another face.
     if off > COARSE:
         fine = GeomProjLib.Curve2d_s(curve, first, last, surface, FINE)
-        if fine is None or _beside(surface, fine, places, drawn) > off:
+        if fine is None or _is_elsewhere(face, own, fine, places) or _beside(surface, fine, places, drawn) > off:
             return
         BRep_Builder().UpdateEdge(edge, fine, face, FINE)
     elif not tolerant:
@@ -61,6 +64,13 @@ def _sharpen(edge: TopoDS_Edge, face: TopoDS_Face) -> None:
     ShapeFix_ShapeTolerance().SetTolerance(edge, TOLERANCE, TopAbs_EDGE)
     BRep_Builder().SameParameter(edge, False)
     BRepLib.SameParameter_s(edge, TOLERANCE)
+
+
+def _is_elsewhere(face: TopoDS_Face, own: BRepAdaptor_Curve2d, fine: Geom2d_Curve, places: list[float]) -> bool:
+    """Whether a new curve passes by the other side of a seam, where the surface has the same points."""
+    spans = np.ptp(np.array(BRepTools.UVBounds_s(face)).reshape(2, 2), axis=1)
+    away = np.array([np.subtract(fine.Value(place).Coord(), own.Value(place).Coord()) for place in places])
+    return bool((np.abs(away) > ELSEWHERE * spans).any())
 
 
 def _beside(

@@ -21,8 +21,9 @@ from cadpanel.errors import ReferenceFileError
 
 TEXT = re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology V\d)")
 BINARY = re.compile(rb"\s*Open CASCADE Topology V\d")
-# The last line of a text names the whole: its orientation, number and place.
-LAST_LINE = re.compile(rb"[-+ie]\d+ \d+\s*\Z")
+# The last line of a text names the whole: its orientation, number and place. The kernel's console writes its own header
+# before the text, and a 0 behind it: no more shapes follow.
+LAST_LINE = re.compile(rb"[-+ie]\d+ \d+\s*(?:\n0\s*)?\Z")
 MARGIN_BYTES = 64
 GROUPS = (TopAbs_COMPOUND, TopAbs_COMPSOLID, TopAbs_SOLID, TopAbs_SHELL)
 NOT_A_NUMBER = re.compile(rb"(?<=\s)[-+]?(?:nan|inf|infinity|1\.#\w+)(?=\s)", re.IGNORECASE)

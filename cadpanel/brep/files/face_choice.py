@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from glob import escape
 
-from cadpanel.brep.files.model import Model, ModelFace
+from cadpanel.brep.files.model import Model, ModelFace, UnreadableFace
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import choice_named
 
@@ -17,7 +17,7 @@ NUMBERS = re.compile(r"0*(\d{1,9})(?:\s*-\s*0*(\d{1,9}))?")
 MOST_LISTED = 8
 
 # What the file says of a face, by the key that asks for it.
-_KEYS: dict[str, Callable[[ModelFace], tuple[str, ...]]] = {
+_KEYS: dict[str, Callable[[ModelFace | UnreadableFace], tuple[str, ...]]] = {
     "name": lambda face: face.names,
     "layer": lambda face: (face.label.layer,) if face.label.layer else (),
     "color": lambda face: (face.label.color,) if face.label.color else (),
@@ -32,13 +32,11 @@ def select_faces(model: Model, chosen: Sequence[str] | None) -> tuple[ModelFace,
         chosen: as `ReferenceSettings.faces` says; None for all faces, if no solid is among them.
 
     Raises:
-        ReferenceFileError: the file holds no faces, a choice fits none, or a solid's outer faces are not chosen.
+        ReferenceFileError: the file holds no faces, a choice fits none or one that cannot be read, or a solid's outer
+            faces are not chosen.
     """
-    faces = model.faces()
-    if not faces:
-        raise ReferenceFileError(
-            f"'{model.source}' holds no faces, only curves, points or nothing: export the faces of the skin, too."
-        )
+    faces, unreadable = model.faces(), model.unreadable()
+    require_faces(model)
     if chosen is None:
         solid = next((face for face in faces if face.of_solid), None)
         if solid is not None:
@@ -49,14 +47,39 @@ def select_faces(model: Model, chosen: Sequence[str] | None) -> tuple[ModelFace,
         return faces
     taken: set[int] = set()
     for word in chosen:
-        fitting = _chosen(word, faces)
+        fitting = _chosen(word, sorted([*faces, *unreadable], key=lambda face: face.number))
         if not fitting:
             raise ReferenceFileError(f"'{model.source}' has no face '{word}': {_offers(faces)}.")
         taken |= fitting
+    for lost in unreadable:
+        if lost.number in taken:
+            raise ReferenceFileError(
+                f"Face {lost.number} of '{model.source}' is chosen, and cannot be read: {lost.why}; repair or rebuild "
+                "it where it was modelled, or choose other faces."
+            )
     return tuple(face for face in faces if face.number in taken)
 
 
-def _chosen(word: str, faces: Sequence[ModelFace]) -> set[int]:
+def require_faces(model: Model) -> None:
+    """Refuse a model without faces.
+
+    Raises:
+        ReferenceFileError: saying whether there are any that cannot be read.
+    """
+    if model.faces():
+        return
+    lost = model.unreadable()
+    if lost:
+        raise ReferenceFileError(
+            f"'{model.source}' holds no face that can be read, as {lost[0].why}: repair or rebuild the faces of the "
+            "skin where they were modelled and export them again."
+        )
+    raise ReferenceFileError(
+        f"'{model.source}' holds no faces, only curves, points or nothing: export the faces of the skin, too."
+    )
+
+
+def _chosen(word: str, faces: Sequence[ModelFace | UnreadableFace]) -> set[int]:
     """The numbers of the faces that one word chooses, none where one of them is not there."""
     numbers = NUMBERS.fullmatch(word)
     if numbers is not None:

@@ -12,13 +12,14 @@ from pathlib import Path
 import numpy as np
 from OCP.Bnd import Bnd_Box
 from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepTools import BRepTools_ReShape
 from OCP.Standard import Standard_Failure
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import checked_format_of
 from cadpanel.brep.files.format import Format
-from cadpanel.brep.files.model import Model, Products
+from cadpanel.brep.files.model import Model, Part, Products
 from cadpanel.brep.files.step import STEP, read_products
 from cadpanel.brep.files.units import refuse_given
 from cadpanel.brep.kernel.placement import placed
@@ -29,6 +30,7 @@ from cadpanel.reference.settings import ReferenceSettings
 
 FAR = 1e7
 """Distance from the origin, mm, from which a model is moved: the kernel's checks fail at map-grid coordinates."""
+MOST_NAMED = 8
 WHOLE_METRE = 1000.0
 LARGEST_COORDINATE = 1e12
 """Beyond it, a double keeps less than 0.1 mm."""
@@ -82,7 +84,8 @@ def _load(
         model, parts=tuple(replace(part, shape=shape) for part, shape in zip(model.parts, shapes, strict=True))
     )
     if form is not STEP:
-        _try_out(model)
+        model = replace(model, parts=tuple(map(_tried_out, model.parts)))
+    model = model.with_notes(_left_out(model))
     if millimetres is not None and model.own_unit and not beside_unitless:
         raise refuse_given(path.name, model.unit)
     if not model.parts:
@@ -103,20 +106,52 @@ def _placed(shapes: Sequence[TopoDS_Shape], source: str) -> list[TopoDS_Shape]:
         ) from error
 
 
-def _try_out(model: Model) -> None:
-    """Refuse faces that the kernel cannot evaluate.
+def _tried_out(part: Part) -> Part:
+    """A part without the faces that the kernel cannot evaluate.
 
     The STEP reader checks what it builds; the other readers take shapes over as they are.
     """
-    for part in model.parts:
-        for face in faces_of(part.shape):
-            try:
-                sample_faces(face)
-            except (Standard_Failure, ValueError, FloatingPointError) as error:
-                raise ReferenceFileError(
-                    f"'{model.source}' holds a face that the CAD kernel cannot evaluate ({error}): repair the "
-                    "reference and export it again."
-                ) from error
+    faces = faces_of(part.shape)
+    faults = {place: fault for place, face in enumerate(faces) if (fault := _fault(face)) is not None}
+    if not faults:
+        return part
+    reshaping = BRepTools_ReShape()
+    for place in faults:
+        reshaping.Remove(faces[place])
+    left = reshaping.Apply(part.shape)
+    # Of what is left the places are counted among all faces again, those that were unreadable before between them.
+    places = [place for place in range(len(faces) + len(part.unreadable)) if place not in part.unreadable]
+    return replace(
+        part,
+        shape=compound_of([]) if left is None or left.IsNull() else left,
+        face_labels=tuple(label for place, label in enumerate(part.face_labels) if place not in faults),
+        unreadable={**part.unreadable, **{places[place]: fault for place, fault in faults.items()}},
+    )
+
+
+def _fault(face: TopoDS_Face) -> str | None:
+    """Why a face cannot be evaluated; None where it can."""
+    try:
+        sample_faces(face)
+    except (Standard_Failure, ValueError, FloatingPointError) as error:
+        return f"the CAD kernel cannot evaluate it ({error})"
+    return None
+
+
+def _left_out(model: Model) -> list[str]:
+    """What to say of faces that cannot be read."""
+    lost = model.unreadable()
+    if not lost:
+        return []
+    first, source = lost[0], model.source
+    if len(lost) == 1:
+        return [f"Face {first.number} of '{source}' cannot be read and is left out: {first.why}."]
+    numbers = ", ".join(str(face.number) for face in lost[:MOST_NAMED])
+    more = f" and {len(lost) - MOST_NAMED} more" if len(lost) > MOST_NAMED else ""
+    return [
+        f"{len(lost)} faces of '{source}' cannot be read and are left out, numbers {numbers}{more}; of face "
+        f"{first.number}, {first.why}."
+    ]
 
 
 def _load_products(path: Path, millimetres: float | None) -> Products:
@@ -165,8 +200,8 @@ def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] 
             f"'{source}' reaches {np.abs(bounds).max():.3g} mm from the origin, farther than millimetres can be told "
             "apart: look for a stray shape or a wrong unit."
         )
-    middle = 0.5 * (bounds[:3] + bounds[3:])
-    if np.linalg.norm(middle) < FAR:
+    middle, half = 0.5 * (bounds[:3] + bounds[3:]), 0.5 * (bounds[3:] - bounds[:3])
+    if np.linalg.norm(middle) < FAR and not np.linalg.norm(half) <= FAR < np.linalg.norm(np.abs(middle) + half):
         return None
     x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE + 0.0).tolist()  # a note that says -0 makes one wonder
     return (x, y, z)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -40,6 +40,8 @@ class Part:
         label: what the file says of it.
         shape: solid, shell, face, compound, wire or edge, placed, mm.
         face_labels: what the file says of each of its faces, in the explorer's order.
+        unreadable: for each of its faces that is not in the shape, as it could not be read, the place among all its
+            faces, from 0, and why.
         product: the name of the product that it is, in formats with products.
         instance: the name of this use of the product in its assembly.
     """
@@ -47,6 +49,7 @@ class Part:
     label: Label
     shape: TopoDS_Shape
     face_labels: tuple[Label, ...]
+    unreadable: Mapping[int, str] = field(default_factory=dict)
     product: str = ""
     instance: str = ""
 
@@ -80,6 +83,25 @@ class ModelFace:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class UnreadableFace:
+    """One face of a file that a model leaves out: its place in the file, what the file says of it, and what is wrong.
+
+    Attributes:
+        number: its place in the file, from 1.
+        label: its part's.
+        names: all that its part is called in the file.
+        panel: what its part is called as a ready-made panel.
+        why: a clause that begins with "it".
+    """
+
+    number: int
+    label: Label
+    names: tuple[str, ...]
+    panel: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ModelCurve:
     """One loose curve of a model: an edge that bounds no face, with its part's label."""
 
@@ -110,15 +132,16 @@ class Model:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def faces(self) -> tuple[ModelFace, ...]:
-        """All faces in file order."""
+        """All faces in file order; they keep their numbers where others are unreadable."""
         found: list[ModelFace] = []
-        for index, (part, panel) in enumerate(zip(self.parts, self.panel_names(), strict=True)):
+        for index, (part, panel, numbers) in enumerate(self._numbered()):
             solids = [shape for solid in shapes_of(part.shape, TopAbs_SOLID) for shape in shapes_of(solid, TopAbs_FACE)]
             bounding = ShapeSet(solids)
-            for face, label in zip(shapes_of(part.shape, TopAbs_FACE), part.face_labels, strict=True):
+            own = [number for place, number in enumerate(numbers) if place not in part.unreadable]
+            for number, face, label in zip(own, shapes_of(part.shape, TopAbs_FACE), part.face_labels, strict=True):
                 found.append(
                     ModelFace(
-                        number=len(found) + 1,
+                        number=number,
                         part=index,
                         label=label.over(part.label),
                         face=TopoDS.Face_s(face),
@@ -128,6 +151,23 @@ class Model:
                     )
                 )
         return tuple(found)
+
+    def unreadable(self) -> tuple[UnreadableFace, ...]:
+        """The faces of the file that are left out, in file order."""
+        return tuple(
+            UnreadableFace(number=numbers[place], label=part.label, names=part.names, panel=panel, why=why)
+            for part, panel, numbers in self._numbered()
+            for place, why in sorted(part.unreadable.items())
+        )
+
+    def _numbered(self) -> list[tuple[Part, str, range]]:
+        """Each part with its panel's name and the numbers of all its faces."""
+        found, start = [], 1
+        for part, panel in zip(self.parts, self.panel_names(), strict=True):
+            stop = start + len(part.face_labels) + len(part.unreadable)
+            found.append((part, panel, range(start, stop)))
+            start = stop
+        return found
 
     def panel_names(self) -> tuple[str, ...]:
         """What each part is called as a ready-made panel, all different; empty for a part without faces."""

@@ -13,15 +13,16 @@ from typing import Any
 
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_FACE
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.faces.pcurve_repair import sharpen_trims
 from cadpanel.brep.files.format import Format, check_nothing
 from cadpanel.brep.files.model import Label, Model, Part
-from cadpanel.brep.files.opennurbs import ConversionError, brep_shape, curve_edge, surface_face
-from cadpanel.brep.files.rhino_objects import RhinoFile, RhinoObject, placed_objects, put
+from cadpanel.brep.files.opennurbs import ConversionError, curve_edge, surface_face
+from cadpanel.brep.files.opennurbs_faces import Faces, brep_faces
+from cadpanel.brep.files.rhino_objects import Placed, RhinoFile, RhinoObject, placed_objects, put
 from cadpanel.brep.files.units import unit_taken
-from cadpanel.brep.kernel.shapes import shapes_of
+from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
@@ -54,24 +55,11 @@ def _read(path: Path, millimetres: float | None) -> Model:
     parts: list[Part] = []
     left_out: Counter[str] = Counter()
     for placed in placed_objects(path.name, file, left_out):
-        try:
-            shape = _shape(rhino, placed.geometry)
-            if shape is not None and placed.matrix is not None:
-                shape = put(shape, placed.matrix)
-        except (ConversionError, Standard_Failure) as error:
-            raise ReferenceFileError(
-                f"'{path.name}' holds an object that cannot be read (number {placed.place}"
-                f"{f', {chr(39)}{placed.label.name}{chr(39)}' if placed.label.name else ''}: {error}): "
-                "repair or rebuild it in Rhino and save again."
-            ) from error
-        if shape is None:
+        part = _part(rhino, placed, factor, path.name)
+        if part is None:
             left_out[_kind(placed.geometry)] += 1
-            continue
-        shape = scaled(shape, factor)
-        # Only now are lengths millimetres, of which the kernel's projections may be a whole one off.
-        for face in shapes_of(shape, TopAbs_FACE):
-            sharpen_trims(TopoDS.Face_s(face))
-        parts.append(Part(label=placed.label, shape=shape, face_labels=(Label(),) * len(shapes_of(shape, TopAbs_FACE))))
+        else:
+            parts.append(part)
     if left_out and not parts:
         raise _nothing_read(path.name, left_out)
     notes = tuple(f"'{path.name}': {count} x {kind} left out." for kind, count in sorted(left_out.items()))
@@ -105,18 +93,59 @@ def _unit(name: str, file: RhinoFile, millimetres: float | None) -> tuple[str, f
     return unit_taken(millimetres), millimetres, False
 
 
-def _shape(rhino: Any, geometry: RhinoObject) -> TopoDS_Shape | None:
-    """An object as a shape of the kernel, or None where it is neither of faces nor a curve."""
-    if isinstance(geometry, rhino.Extrusion):
-        geometry = geometry.ToBrep(True)
-        if geometry is None:
-            raise ConversionError("its extrusion cannot be made a polysurface")
-    if isinstance(geometry, rhino.Brep):
-        return brep_shape(geometry)
-    if isinstance(geometry, rhino.Surface):
-        return surface_face(geometry)
-    if isinstance(geometry, rhino.Curve):
-        return curve_edge(geometry)
+def _part(rhino: Any, placed: Placed, factor: float, source: str) -> Part | None:
+    """An object as a part, or None where it is neither of faces nor a curve.
+
+    Raises:
+        ReferenceFileError: it is a curve that cannot be read.
+    """
+    if isinstance(placed.geometry, rhino.Curve):
+        return _curve_part(placed, factor, source)
+    faces = _faces(rhino, placed.geometry, factor)
+    if faces is None:
+        return None
+    shape, unreadable = compound_of([]) if faces.shape is None else faces.shape, faces.unreadable
+    if placed.matrix is not None:
+        try:
+            shape = put(shape, placed.matrix)
+        except (ConversionError, Standard_Failure) as error:
+            count = len(shapes_of(shape, TopAbs_FACE)) + len(unreadable)
+            shape, unreadable = compound_of([]), dict.fromkeys(range(count), str(error))
+    shape = scaled(shape, factor)
+    own = shapes_of(shape, TopAbs_FACE)
+    # Only now are lengths millimetres, of which a trim may run a whole one beside its edge.
+    for face in own:
+        sharpen_trims(TopoDS.Face_s(face))
+    return Part(label=placed.label, shape=shape, face_labels=(Label(),) * len(own), unreadable=unreadable)
+
+
+def _curve_part(placed: Placed, factor: float, source: str) -> Part:
+    try:
+        edge = curve_edge(placed.geometry)
+        shape = edge if placed.matrix is None else put(edge, placed.matrix)
+    except (ConversionError, Standard_Failure) as error:
+        raise ReferenceFileError(
+            f"'{source}' holds a curve that cannot be read (number {placed.place}"
+            f"{f', {chr(39)}{placed.label.name}{chr(39)}' if placed.label.name else ''}: {error}): "
+            "repair or rebuild it in Rhino and save again."
+        ) from error
+    return Part(label=placed.label, shape=scaled(shape, factor), face_labels=())
+
+
+def _faces(rhino: Any, geometry: RhinoObject, factor: float) -> Faces | None:
+    """The faces of a surface, polysurface or extrusion; None of what is none of these."""
+    count = len(geometry.Faces) if isinstance(geometry, rhino.Brep) else 1
+    try:
+        if isinstance(geometry, rhino.Extrusion):
+            geometry = geometry.ToBrep(True)
+            if geometry is None:
+                raise ConversionError("it is an extrusion that cannot be made a polysurface")
+        if isinstance(geometry, rhino.Brep):
+            return brep_faces(geometry, rhino, factor)
+        if isinstance(geometry, rhino.Surface):
+            return Faces(shape=surface_face(geometry), unreadable={})
+    except (ConversionError, Standard_Failure) as error:
+        return Faces(shape=None, unreadable=dict.fromkeys(range(count), str(error)))
     return None
 
 

@@ -6,11 +6,13 @@ looked for here.
 
 from __future__ import annotations
 
+import math
 import re
 import stat
 from pathlib import Path
 
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings, file_named
 
 READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242), IGES, .brep and Rhino .3dm"
 # The first and last part of a file in which its beginning and end are looked for.
@@ -27,11 +29,16 @@ OTHER_FORMATS = (
     (re.compile(rb"\x1f\x8b"), "a gzip archive"),
 )
 QUOTED = re.compile(rb"'[^']*'")
-# Also powers of ten of three digits: no length is so large, and 1.E400 keeps the kernel busy for minutes.
-NOT_A_NUMBER = re.compile(rb"[(,]\s*([-+]?(?:nan|inf|infinity|\d+\.#\w+|\d+\.?\d*E\+?\d{3,}))\s*[,)]", re.IGNORECASE)
+# Also what may be too large for a number: with a power of ten of three digits or more, leading zeros aside, or with as
+# many digits before the point. Some, as 1.E400, keep the kernel busy for minutes.
+NOT_A_NUMBER = re.compile(
+    rb"[(,]\s*([-+]?(?:nan|inf|infinity|\d+\.#\w+|\d+\.?\d*E\+?0*[1-9]\d\d+|\d{100,}\.?\d*))\s*(?=[,)])", re.IGNORECASE
+)
+LARGEST = 1e100
+"""What is larger is no length, in whatever unit."""
 # What each of them holds, found in a fraction of the time; names may hold it too.
 TRACES = (b"nan", b"inf", b".#")
-LONG_POWER = re.compile(rb"e\+?\d\d\d")
+LONG = re.compile(rb"e\+?0*[1-9]\d\d|\d{100}")
 INSTANCE = re.compile(rb"#(\d+)\s*=")
 
 
@@ -62,6 +69,23 @@ def contents(path: Path, most: int = -1) -> bytes:
     return text
 
 
+def require_files(reference: str | Path, settings: ReferenceSettings) -> None:
+    """Refuse files that are not there, before anybody waits for the kernel to be loaded.
+
+    Args:
+        reference: the file.
+        settings: with the file that is read beside it.
+
+    Raises:
+        ReferenceFileError: as `contents` says.
+        SettingsError: the name is none.
+    """
+    path = file_named(reference, "reference")
+    for file in (path, settings.beside(path)):
+        if file is not None:
+            contents(file, MARGIN_BYTES)
+
+
 def refuse_format(path: Path, head: bytes) -> ReferenceFileError:
     """What to say of a file in a format that is not read, by its first bytes."""
     called = next((name for signature, name in OTHER_FORMATS if signature.match(head)), "of no format that it knows")
@@ -84,18 +108,30 @@ def check_step_text(path: Path, text: bytes) -> None:
 def _check_numbers(name: str, text: bytes) -> None:
     """Refuse NaN and infinity, which the kernel would replace by numbers of its own."""
     lower = text.lower()
-    if not (any(trace in lower for trace in TRACES) or LONG_POWER.search(lower)):
+    if not (any(trace in lower for trace in TRACES) or LONG.search(lower)):
         return
-    if not NOT_A_NUMBER.search(text):
+    if _first_fault(text) is None:
         return
     # Names may hold anything, so look again with every quoted text emptied.
     bare = QUOTED.sub(b"''", text)
-    found = NOT_A_NUMBER.search(bare)
+    found = _first_fault(bare)
     if found is None:
         return
     instances = INSTANCE.findall(bare[: found.start()])
     where = f" at #{instances[-1].decode()}" if instances else ""
     raise ReferenceFileError(
-        f"'{name}' holds a coordinate that is not a number ({found.group(1).decode()}{where}): "
+        f"'{name}' holds a coordinate that is not a number ({found.group(1).decode():.40}{where}): "
         "repair that face and export the reference again."
     )
+
+
+def _first_fault(text: bytes) -> re.Match[bytes] | None:
+    """The first number in a text that is none, or beyond all bounds: zero to any power is one."""
+    return next((found for found in NOT_A_NUMBER.finditer(text) if not abs(_value(found.group(1))) <= LARGEST), None)
+
+
+def _value(word: bytes) -> float:
+    try:
+        return float(word)
+    except ValueError:  # as Windows writes what is none, 1.#QNAN
+        return math.nan

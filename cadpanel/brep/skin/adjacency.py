@@ -18,11 +18,10 @@ from cadpanel.brep.skin.face_cleanup import SkinFace
 from cadpanel.geometry.order import order_in_space
 from cadpanel.geometry.polyline import distances_to_curves
 from cadpanel.geometry.vectors import norm
+from cadpanel.reference.inner_edges import KNIFE_EDGE
 
 # Places on an edge, as parts of its points, of which one must lie on the other edge for the two to touch.
 PROBES = (0.25, 0.5, 0.75)
-# Faces that fold back by more than this where they touch, like a wing's at its trailing edge, are not joined, degrees.
-KNIFE_EDGE = 135.0
 # Edges must lie this close to each other, as a part of the shorter one's length, to touch along and not across.
 LONG_ENOUGH = 0.1
 # Points looked at around a probe, in case that the other edge is sampled more coarsely.

@@ -55,25 +55,34 @@ class SkinFace:
 
 
 def skin_faces(
-    faces: Sequence[ModelFace], source: str, tolerance: float
+    faces: Sequence[ModelFace], source: str, tolerance: float, *, chosen: bool = False
 ) -> tuple[tuple[SkinFace, ...], tuple[str, ...]]:
     """Measure faces, leaving out those without width and those that lie on another one.
+
+    One that cannot be measured is left out, too, unless the user has chosen it.
 
     Args:
         faces: what is chosen of the file.
         source: the file's name.
         tolerance: within which a face lies on another one, mm.
+        chosen: whether the user has named them.
 
     Returns:
         The faces that stay, and a note on each that does not.
 
     Raises:
-        ReferenceFileError: a face cannot be evaluated, or none is left.
+        ReferenceFileError: a chosen face cannot be evaluated, or none is left.
     """
     notes: list[str] = []
     measured = []
     for face in faces:
-        skin = measure(face, source)
+        try:
+            skin = _measured(face)
+        except _FaultError as error:
+            if chosen:
+                raise _refused(face, source, error) from error
+            notes.append(f"Face {face.number} of '{source}' {error} and is left out.")
+            continue
         if skin is None:
             notes.append(f"Face {face.number} of '{source}' has no area and is left out.")
             continue
@@ -101,17 +110,28 @@ def measure(face: ModelFace, source: str) -> SkinFace | None:
         ReferenceFileError: the kernel cannot evaluate it.
     """
     try:
+        return _measured(face)
+    except _FaultError as error:
+        raise _refused(face, source, error) from error
+
+
+class _FaultError(Exception):
+    """What keeps a face from being measured, to go on after its name."""
+
+
+def _refused(face: ModelFace, source: str, why: _FaultError) -> ReferenceFileError:
+    return ReferenceFileError(f"Face {face.number} of '{source}' {why}: repair it and export again.")
+
+
+def _measured(face: ModelFace) -> SkinFace | None:
+    try:
         (samples,) = sample_faces(face.face)
         patch = patch_of(face.face)
     except Standard_Failure as error:
-        raise ReferenceFileError(
-            f"Face {face.number} of '{source}' cannot be evaluated by the CAD kernel ({error}): repair and export it."
-        ) from error
+        raise _FaultError(f"cannot be evaluated by the CAD kernel ({error})") from error
     arrays = (samples.points, samples.normals, samples.weights, *samples.edges, *samples.edge_normals)
     if not all(np.isfinite(array).all() for array in arrays):
-        raise ReferenceFileError(
-            f"Face {face.number} of '{source}' has points that are not numbers: repair it and export again."
-        )
+        raise _FaultError("has points that are not numbers")
     if not len(samples.points):
         return None
     points = np.concatenate([samples.points, *samples.edges])

@@ -7,10 +7,12 @@ face goes through the kernel's splitter. Either way every piece is held against 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.gp import gp_Pln
-from OCP.TopoDS import TopoDS_Face
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array, BoolArray, IntArray
@@ -18,20 +20,30 @@ from cadpanel.brep.faces.boundary import evaluate
 from cadpanel.brep.faces.face_patch import Patch, patch_of
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import breaks_of
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
-from cadpanel.brep.splitting.split_by_pcurves import slice_patch
+from cadpanel.brep.splitting.split_along_edges import split_along
+from cadpanel.brep.splitting.split_by_pcurves import edge_across, slice_patch
 from cadpanel.brep.splitting.splitter import split_faces
 from cadpanel.errors import ReferenceFileError
+from cadpanel.geometry.vectors import unit
 
 # Lines of the grid on which a face is evaluated to find where planes cross it, across and along the strip.
 LINES_ACROSS = 33
 LINES_ALONG = 129
+# Lines in a span of a spline that lies between two of them, and as which part of the range two of them are one.
+LINES_A_SPAN = 17
+SAME_LINE = 1e-9
 NEWTON_STEPS = 30
+# By how much of a cell on either side a crossing in it is looked for.
+WIDER = 0.1
 # A crossing has been found when its point is this close to the plane, mm.
 ON_PLANE = 1e-7
 # A border this close to a plane lies in it and is not cut, mm.
 IN_PLANE = 0.01
+# The range of a trimmed face reaches over its border, and so do the curves across it: up to so many times the reach.
+OVER_THE_BORDER = 1.5
 # How far a piece may reach through a plane that bounds it, mm.
 THROUGH = 0.02
 # How often a point's place among the planes is corrected by the planes themselves.
@@ -46,14 +58,7 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
     """
     groups: list[list[TopoDS_Face]] = [[] for _ in range(len(cuts.origins) + 1)]
     for face in surface.faces:
-        what = f"face {face.number} of '{source}'"
-        first, last = _reached(face.patch, cuts)
-        sliced = _sliced(face.patch, cuts, first, last)
-        if sliced is None:
-            planes = [_plane_face(cuts, index) for index in range(first, last)]
-            pieces = split_faces([face.patch.face], planes, what).faces[0] if planes else (face.patch.face,)
-            sliced = [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
-        for place, piece in sliced:
+        for place, piece in pieces_of(face.patch, cuts, f"face {face.number} of '{source}'"):
             groups[place].append(piece)
     empty = next((index for index, group in enumerate(groups) if not group), None)
     if empty is not None:
@@ -66,6 +71,55 @@ def cut_by_planes(surface: Surface, cuts: Cuts, source: str) -> list[list[TopoDS
             "or cuts that lie on the surface."
         )
     return groups
+
+
+def pieces_of(patch: Patch, cuts: Cuts, what: str) -> list[tuple[int, TopoDS_Face]]:
+    """The pieces into which planes cut a patch, each with its place among them.
+
+    Args:
+        patch: any.
+        cuts: the planes.
+        what: the patch, for messages.
+
+    Raises:
+        ReferenceFileError: the kernel leaves it uncut.
+    """
+    first, last = _reached(patch, cuts)
+    sliced = _sliced(patch, cuts, first, last)
+    return _split(patch, cuts, first, last, what) if sliced is None else sliced
+
+
+def _split(patch: Patch, cuts: Cuts, first: int, last: int, what: str) -> list[tuple[int, TopoDS_Face]]:
+    """The pieces of a patch that the kernel splits off by planes, each with its place.
+
+    Where it misses a plane, as on long tapered faces by a tenth of a millimetre and more, it is given the curves along
+    which the planes cross the patch.
+
+    Raises:
+        ReferenceFileError: it leaves the patch uncut either way.
+    """
+    if first == last:
+        return [(_place_of_piece(patch.face, cuts, what), patch.face)]
+    planes = [_plane_face(cuts, index) for index in range(first, last)]
+    try:
+        pieces = split_faces([patch.face], planes, what).faces[0]
+        return [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
+    except ReferenceFileError:
+        curves = _curves(patch, cuts, first, last)
+        if curves is None:
+            raise
+    pieces = split_along([patch.face], curves, what).faces[0]
+    return [(_place_of_piece(piece, cuts, what), piece) for piece in pieces]
+
+
+def _curves(patch: Patch, cuts: Cuts, first: int, last: int) -> list[TopoDS_Edge] | None:
+    """The curves along which planes cross the surface over a patch's range; None where one does not cross all of it."""
+    normals = cuts.normals[first:last]
+    axis = _axis_through(patch, cuts)
+    across = _lines_across(patch, axis)
+    reach = OVER_THE_BORDER * cuts.reach[first:last]
+    found = _crossings(patch, axis, across, cuts.origins[first:last], normals, reach)
+    return None if found is None else [edge_across(patch, axis, across, own) for own in found[1]]
 
 
 def places_of(points: Array, cuts: Cuts) -> IntArray:
@@ -99,15 +153,17 @@ def _sliced(patch: Patch, cuts: Cuts, first: int, last: int) -> list[tuple[int, 
         return None
     chosen = slice(first, last)
     origins, normals, reach = cuts.origins[chosen], cuts.normals[chosen], cuts.reach[chosen]
-    across = np.linspace(0.0, 1.0, LINES_ACROSS)
-    axis = _axis_through(patch, normals)
+    axis = _axis_through(patch, cuts)
+    across = _lines_across(patch, axis)
     crossings = _crossings(patch, axis, across, origins, normals, reach)
     if crossings is None:
         return None
     cut, parts = crossings
     if not cut.any():
         middle = patch.points(patch.at(axis, np.array([0.5]), np.array([0.5])))
-        return [(int(places_of(middle, cuts)[0]), patch.face)]
+        place = int(places_of(middle, cuts)[0])
+        border = np.concatenate([edge.points for edge in patch.edges])
+        return [(place, patch.face)] if _pierced(border, place, cuts) is None else None
     numbers = np.flatnonzero(cut)
     if len(numbers) != numbers[-1] - numbers[0] + 1:
         return None
@@ -117,27 +173,41 @@ def _sliced(patch: Patch, cuts: Cuts, first: int, last: int) -> list[tuple[int, 
         return None
     pieces = slice_patch(patch, axis, across, ordered)
     if len(numbers) == 1:
-        rising = _rises(patch, axis, normals[numbers[0]])
+        rising = _rises(patch, axis, float(parts[0].mean()), normals[numbers[0]])
     start = first + int(numbers[0])
     places = range(start, start + len(pieces))
     return list(zip(places if rising else reversed(places), pieces, strict=True))
 
 
-def _axis_through(patch: Patch, normals: Array) -> int:
-    """The parameter that runs through the planes rather than along them."""
-    normal = normals[len(normals) // 2] if len(normals) else np.array([1.0, 0.0, 0.0])
+def _axis_through(patch: Patch, cuts: Cuts) -> int:
+    """The parameter that runs along the line which the planes cross, rather than along the planes."""
     grid = np.linspace(0.1, 0.9, 5)
-    _, along_u, along_v = evaluate(patch.surface, patch.at(0, grid[:, None], grid[None, :]))
+    points, *along = evaluate(patch.surface, patch.at(0, grid[:, None], grid[None, :]))
+    ways = unit(np.gradient(cuts.line, axis=0))[cKDTree(cuts.line).query(points)[1]]
     through = [
-        np.abs(vectors @ normal).mean() / max(np.linalg.norm(vectors, axis=-1).mean(), 1e-300)
-        for vectors in (along_u, along_v)
+        np.abs(np.sum(vectors * ways, axis=-1)).mean() / max(np.linalg.norm(vectors, axis=-1).mean(), 1e-300)
+        for vectors in along
     ]
     return int(through[1] > through[0])
 
 
-def _rises(patch: Patch, axis: int, normal: Array) -> bool:
-    ends = patch.points(patch.at(axis, np.array([0.0, 1.0]), np.array([0.5, 0.5])))
-    return bool((ends[1] - ends[0]) @ normal > 0.0)
+def _lines_across(patch: Patch, axis: int) -> Array:
+    """(w,) rising parts of the other parameter's range at which cuts are solved for: even ones, closer in short spans.
+
+    A spline may do in a hundredth of its range what it does in all the rest, as where it begins on another one's edge.
+    """
+    even = np.linspace(0.0, 1.0, LINES_ACROSS)
+    low, high = patch.bounds[1 - axis]
+    breaks = np.clip((breaks_of(patch.surface, 1 - axis) - low) / (high - low), 0.0, 1.0)
+    short = [pair for pair in pairwise(breaks.tolist()) if SAME_LINE < pair[1] - pair[0] < even[1]]
+    lines = np.unique(np.concatenate([even, *(np.linspace(first, last, LINES_A_SPAN) for first, last in short)]))
+    return np.asarray(lines[np.concatenate([np.diff(lines) > SAME_LINE, [True]])])
+
+
+def _rises(patch: Patch, axis: int, part: float, normal: Array) -> bool:
+    """Whether a patch goes through a plane along its parameter, at a part of the range where it crosses it."""
+    _, *along = evaluate(patch.surface, patch.at(axis, np.array([part]), np.array([0.5])))
+    return bool(along[axis][0] @ normal > 0.0)
 
 
 def _crossings(
@@ -176,6 +246,8 @@ def _refined(
     """Solve for the crossings within their cells by Newton's method, kept inside by bisection: (c, w)."""
     low, high = along[cells], along[cells + 1]
     parts = 0.5 * (low + high)
+    # A plane may pass through the end of a cell, and which side that lies on is a matter of the last bit.
+    low, high = np.maximum(low - WIDER * along[1], 0.0), np.minimum(high + WIDER * along[1], 1.0)
     lines = np.broadcast_to(across, parts.shape)
     start = _heights(patch, axis, low, lines, origins, normals)[0]
     for _ in range(NEWTON_STEPS):
@@ -221,14 +293,21 @@ def _place_of_piece(piece: TopoDS_Face, cuts: Cuts, what: str) -> int:
         # All its boundary lies in one plane, like that of half a ball: its inside tells on which side.
         inside = np.concatenate([samples.points for samples in sample_faces(piece)])
         place = int(np.bincount(places_of(inside, cuts)).argmax())
+    pierced = _pierced(points, place, cuts)
+    if pierced is not None:
+        x, y, z = cuts.origins[pierced]
+        raise ReferenceFileError(
+            f"The CAD kernel leaves {what} uncut at ({x:.1f}, {y:.1f}, {z:.1f}): move the cuts a little, cut with a "
+            "network of curves, or split the surface where it was modelled."
+        )
+    return place
+
+
+def _pierced(points: Array, place: int, cuts: Cuts) -> int | None:
+    """The plane on whose other side some of (m, 3) points of a place lie; None where there is none."""
     for plane, sign in ((place - 1, -1.0), (place, 1.0)):
         if 0 <= plane < len(cuts.origins):
-            offsets = points - cuts.origins[plane]
-            heights = sign * (offsets @ cuts.normals[plane])
+            heights = sign * ((points - cuts.origins[plane]) @ cuts.normals[plane])
             if heights.max() > THROUGH:
-                x, y, z = cuts.origins[plane]
-                raise ReferenceFileError(
-                    f"The CAD kernel leaves {what} uncut at ({x:.1f}, {y:.1f}, {z:.1f}): move the cuts a little, cut "
-                    "with a network of curves, or split the surface where it was modelled."
-                )
-    return place
+                return plane
+    return None

@@ -10,7 +10,7 @@ from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
 from OCP.Geom import Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
 from scipy.interpolate import make_interp_spline
 
 from cadpanel.arrays import Array
@@ -48,6 +48,13 @@ def slice_patch(patch: Patch, axis: int, across: Array, cuts: Array) -> list[Top
             loop = [curve.Reversed() for curve in reversed(loop)]
         pieces.append(_face(surface, loop, patch.side))
     return pieces
+
+
+def edge_across(patch: Patch, axis: int, across: Array, parts: Array) -> TopoDS_Edge:
+    """The edge at (w,) parts of the range of parameter `axis`, at (w,) rising parts of that of the other one."""
+    edge = BRepBuilderAPI_MakeEdge(_curve(patch, axis, across, parts), geometry(patch)).Edge()
+    BRepLib.BuildCurves3d_s(edge)
+    return edge
 
 
 def _face(surface: Geom_Surface, loop: list[Geom2d_Curve], side: float) -> TopoDS_Face:

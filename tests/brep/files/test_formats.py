@@ -9,6 +9,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Pnt, gp_Trsf
 from OCP.TopAbs import TopAbs_FACE
 
+from cadpanel.brep.cutting.raw_panels import raw_panels
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files import rhino
 from cadpanel.brep.files.catalogue import FORMATS, format_of
@@ -17,6 +18,7 @@ from cadpanel.brep.files.loading import load_model
 from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.kernel.shapes import compound_of, packed, shapes_of, unpacked
 from cadpanel.errors import ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
 from tests.model_files import strip_faces, write_labelled, write_shape
 
 SAME = 1e-6  # mm
@@ -159,6 +161,20 @@ def test_content_counts_and_not_the_extension(tmp_path, parts, name):
     assert load_model(renamed).faces()
 
 
+@pytest.mark.parametrize("ending", ["\n0\n", "\n0\n\n", "\r\n0\r\n"])
+def test_brep_as_the_kernels_console_saves_it_is_read(tmp_path, faces, ending):
+    plain = write_shape(tmp_path / "plain.brep", compound_of(faces))
+    saved = tmp_path / "saved.brep"
+    saved.write_bytes(b"DBRep_DrawableShape\n" + plain.read_bytes() + ending.encode())
+    areas = [[sample_faces(face.face)[0].weights.sum() for face in load_model(file).faces()] for file in (plain, saved)]
+    assert len(areas[0]) == len(faces)
+    assert areas[0] == areas[1]
+    broken = tmp_path / "broken.brep"
+    broken.write_bytes(saved.read_bytes()[:-200] + ending.encode())
+    with pytest.raises(ReferenceFileError, match=r"'broken.brep' breaks off before its end"):
+        load_model(broken)
+
+
 def test_every_format_has_its_own_name_and_endings():
     assert len({form.name for form in FORMATS}) == len(FORMATS)
     endings = [ending for form in FORMATS for ending in form.suffixes]
@@ -177,6 +193,22 @@ def test_model_far_away_is_moved_near_the_origin_by_whole_metres_and_says_so(tmp
     near = load_model(write_shape(tmp_path / "near.brep", compound_of(faces)), 1.0)
     assert near.origin == (0.0, 0.0, 0.0)
     assert near.notes == ()
+
+
+def test_model_at_hand_that_reaches_too_far_is_moved_until_it_does_not(tmp_path, faces):
+    shift = gp_Trsf()
+    shift.SetTranslation(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(9.995e6, 0.0, 0.0))
+    path = write_shape(tmp_path / "edge.brep", BRepBuilderAPI_Transform(compound_of(faces), shift, True).Shape())
+    assert load_model(path, 1.0).origin != (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("how", [{}, {"divide": 4}, {"faces": ("1-3",)}], ids=["whole", "cut", "chosen"])
+def test_skin_too_large_for_panels_is_refused_when_it_is_read(tmp_path, faces, how):
+    path = write_shape(tmp_path / "large.brep", compound_of(faces))
+    with pytest.raises(
+        ReferenceFileError, match=r"The skin in 'large.brep' reaches .* within 1e\+07 mm: look for a wr"
+    ):
+        raw_panels(load_model(path, 1e4), ReferenceSettings(**how))
 
 
 def test_model_beyond_all_measure_is_refused(tmp_path, faces):

@@ -3,11 +3,12 @@ import re
 import numpy as np
 import pytest
 from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepLib import BRepLib
 from OCP.Geom2d import Geom2d_Ellipse
 from OCP.gp import gp_Ax2d, gp_Dir2d, gp_Pnt, gp_Pnt2d
+from OCP.ShapeFix import ShapeFix_Face
 from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
@@ -20,6 +21,7 @@ from cadpanel.brep.kernel.shapes import shapes_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.splitting.splitter import area_of
+from cadpanel.brep.survey import survey
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.rhino_files import bent_surface, file_in, off_border, rhino, written
@@ -113,7 +115,12 @@ def test_border_on_a_curved_surface_runs_along_its_edge(factor):
     drawn = BRep_Tool.Curve_s(flat, 0.0, 1.0)
     for geometry in (surface, drawn):
         geometry.Scale(gp_Pnt(0.0, 0.0, 0.0), factor)
-    face = opennurbs._trimmed(surface, [[BRepBuilderAPI_MakeEdge(drawn).Edge()]])
+    wire = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(drawn).Edge()).Wire()
+    fixing = ShapeFix_Face(BRepBuilderAPI_MakeFace(surface, wire, True).Face())
+    fixing.Perform()
+    fixing.FixOrientation()
+    face = fixing.Face()
+    BRepLib.SameParameter_s(face, 1e-7, True)
     (face,) = map(TopoDS.Face_s, shapes_of(scaled(face, 1.0 / factor), TopAbs_FACE))
     assert off_border(face) > 1e-3
     sharpen_trims(face)
@@ -173,14 +180,16 @@ def test_sheared_block_of_a_polysurface_is_sheared(tmp_path):
 
 
 @pytest.mark.parametrize(("entry", "value"), [("M22", 0.0), ("M33", 0.0), ("M03", float("nan"))])
-def test_block_that_rhino_cannot_place_is_refused(tmp_path, entry, value):
+def test_faces_of_a_block_that_rhino_cannot_place_are_left_out(tmp_path, entry, value):
     arc = rhino.Arc(rhino.Circle(rhino.Point3d(0.0, 0.0, 0.0), 500.0), 1.5)
     extrusion = rhino.Extrusion.Create(rhino.NurbsCurve.CreateFromArc(arc), 3000.0, False)
     transform = rhino.Transform(1.0)
     setattr(transform, entry, value)
     path = written(tmp_path / "flattened.3dm", placed_once(extrusion, transform))
-    with pytest.raises(ReferenceFileError, match=r"'flattened.3dm' holds .* cannot be placed as its block says"):
-        load_model(path)
+    (note,) = survey(path).notes
+    assert re.fullmatch(r"Face 1 of 'flattened.3dm' cannot be read and is left out: it cannot be placed as .*", note)
+    with pytest.raises(ReferenceFileError, match=r"'flattened.3dm' holds no face .* placed as its block says"):
+        read_raw_panels(path)
 
 
 def test_names_layers_and_colors_choose_faces_and_hidden_things_stay_out(tmp_path):

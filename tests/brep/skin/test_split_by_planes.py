@@ -4,11 +4,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from OCP.Geom import Geom_Plane
-from OCP.gp import gp_Pln
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepLib import BRepLib
+from OCP.GCE2d import GCE2d_MakeSegment
+from OCP.Geom import Geom_BSplineSurface, Geom_Plane
+from OCP.gp import gp_Pln, gp_Pnt2d
 
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.kernel.splines import knot_arrays, pole_grid
 from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.skin.split_by_planes import cut_by_planes, places_of
 from cadpanel.brep.skin.strip import find_strip
@@ -103,3 +107,35 @@ def test_half_a_tube_is_cut_along_its_arc_and_each_piece_knows_its_place():
     groups = cut_by_planes(surface_of(face), cuts_across([1000.0, 3000.0]), "roof.step")
     shares = [sum(map(area_of, group)) / area_of(face) for group in groups]
     assert shares == pytest.approx([0.25, 0.5, 0.25], rel=1e-6)
+
+
+def swept(trimmed):
+    """A swept face that bends in a thousandth of its range, as where a spline was drawn on to meet another one."""
+    knots = np.array([0.0, 0.0, 0.0, 0.0, 1e-3, 1.0, 1.0, 1.0, 1.0])
+    across = np.array([(0.0, 0.0), (0.0, 40.0), (30.0, 60.0), (300.0, 80.0), (600.0, 90.0)])
+    rows = [[(x + 0.3 * y, y, z) for y, z in across] for x in (0.0, 4000.0)]
+    (knots_u, times_u), (knots_v, times_v) = knot_arrays(np.array([0.0, 0.0, 1.0, 1.0])), knot_arrays(knots)
+    surface = Geom_BSplineSurface(pole_grid(np.array(rows)), knots_u, knots_v, times_u, times_v, 1, 3)
+    face = BRepBuilderAPI_MakeFace(surface, 1e-7).Face()
+    if not trimmed:
+        return face
+    ends = [(0.0, 0.0), (1.0, 0.0), (0.98, 1.0), (0.01, 0.95)]
+    wiring = BRepBuilderAPI_MakeWire()
+    for (u, v), (s, t) in zip(ends, [*ends[1:], ends[0]], strict=True):
+        line = GCE2d_MakeSegment(gp_Pnt2d(u, v), gp_Pnt2d(s, t)).Value()
+        wiring.Add(BRepBuilderAPI_MakeEdge(line, surface).Edge())
+    cut = BRepBuilderAPI_MakeFace(surface, wiring.Wire(), True).Face()
+    BRepLib.BuildCurves3d_s(cut)
+    return cut
+
+
+@pytest.mark.parametrize("trimmed", [False, True])
+def test_cuts_lie_in_their_planes_where_a_spline_does_much_in_a_little_of_its_range(trimmed):
+    face, cuts = swept(trimmed), cuts_across([900.0, 1700.0, 2600.0, 3400.0], (0.95, 0.1, 0.3), reach=900.0)
+    groups = cut_by_planes(surface_of(face), cuts, "wing.step")
+    assert [len(group) for group in groups] == [1] * 5
+    for place, group in enumerate(groups):
+        points = np.concatenate([edge for piece in sample_faces(compound_of(group)) for edge in piece.edges])
+        for plane, side in ((place - 1, -1.0), (place, 1.0)):
+            if 0 <= plane < 4:
+                assert (side * ((points - cuts.origins[plane]) @ cuts.normals[plane])).max() < INSIDE

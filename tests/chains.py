@@ -14,6 +14,7 @@ from cadpanel.features.layout import Layout
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature, Points
+from cadpanel.features.walk import arc_rulings
 from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import dot
@@ -218,4 +219,4 @@ def outline_near(layout: Layout, corners: Array, random: np.random.Generator, sh
 
 
 def rulings_of(walked):
-    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": walked.arcs}
+    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": arc_rulings(walked)}

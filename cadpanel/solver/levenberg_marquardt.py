@@ -75,12 +75,14 @@ class Solution:
         cost: (components,) per connected component.
         converged: (components,) whether it stopped by itself within the iterations.
         iterations: linear systems solved.
+        damping: (components,) at the end, to go on with.
     """
 
     unknowns: Array
     cost: Array
     converged: BoolArray
     iterations: int
+    damping: Array
 
     @property
     def stopped(self) -> Stop:
@@ -88,14 +90,14 @@ class Solution:
         return Stop.AT_REST if self.converged.all() else Stop.STEP_LIMIT
 
 
-def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float = 1e-3) -> Solution:
+def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float | Array = 1e-3) -> Solution:
     """Minimise the model's cost from `start` (count, size).
 
     Args:
         model: the sum of squares.
         start: where to begin; its cost must be finite.
         stopping: when to stop.
-        damping: the first damping, relative to the diagonal of J^T J.
+        damping: the first damping, relative to the diagonal of J^T J; one for all, or one a component (components,).
     """
     pattern = model.pattern
     component, count = pattern.component, pattern.components
@@ -106,7 +108,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
     bounds = model.bounds
     unknowns = start.copy() if bounds is None else bounds.clip(start)
     now = _Tried(unknowns, *model.linearize(unknowns))
-    mu, growth = np.full(count, damping), np.full(count, 2.0)
+    mu, growth = np.zeros(count) + damping, np.full(count, 2.0)
     done = np.zeros(count, dtype=bool)
     iterations = 0
     while iterations < stopping.iterations and not done.all():
@@ -135,7 +137,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         done |= (hoped <= stopping.cost * before) | (mu >= _MOST_DAMPING)
         if better.any():
             now = ahead
-    return Solution(now.unknowns, per_component(now.cost), done, iterations)
+    return Solution(now.unknowns, per_component(now.cost), done, iterations, mu)
 
 
 def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Array, Array]:

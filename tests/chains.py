@@ -15,6 +15,7 @@ from cadpanel.features.layout import Layout
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.features.polygon import Polygon
 from cadpanel.features.rulings import PanelFeature, Points
+from cadpanel.features.walk import arc_rulings
 from cadpanel.fitting.problem import Problem
 from cadpanel.geometry.frames import cayley
 from cadpanel.geometry.vectors import dot
@@ -246,4 +247,4 @@ def pieces_near(layout: Layout, random: np.random.Generator) -> Pieces:
 
 
 def rulings_of(walked):
-    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": walked.arcs}
+    return {"anchor": walked.anchor, "edges": walked.edges, "carriers": walked.carriers, "arcs": arc_rulings(walked)}

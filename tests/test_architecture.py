@@ -209,7 +209,6 @@ THROUGH_A_DOOR = {
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",
     "cadpanel.fitting.start.chains": "tests/fitting/test_every_feature.py",
-    "cadpanel.geometry.patch_under": "tests/features/test_every_feature.py",
     "cadpanel.reference.alignment": "tests/reference/test_oriented_panel.py",
     "cadpanel.reference.inner_edges": "tests/reference/test_outline.py",
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",

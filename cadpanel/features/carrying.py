@@ -8,7 +8,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.patches import Kind
-from cadpanel.geometry.frames import rotate_about, rotation_twist
+from cadpanel.geometry.frames import rotation_twist
 from cadpanel.geometry.vectors import cross
 
 
@@ -22,14 +22,15 @@ class Frames:
     n: Array
 
 
-def carry(kind: Kind, frames: Frames, dimensions: Array, way: float) -> tuple[Frames, Array]:
+def carry(kind: Kind, frames: Frames, dimensions: Array, way: float | Array) -> tuple[Frames, Array]:
     """Carry frames over a patch.
 
     Args:
         kind: of the patch.
         frames: n frames on one edge of the patch.
         dimensions: (n, d) the patch's dimensions for each panel, see `patches.DIMENSIONS`.
-        way: +1.0 walks over the whole patch towards b, -1.0 towards -b, +-0.5 half of it, and so on.
+        way: +1.0 walks over the whole patch towards b, -1.0 towards -b, +-0.5 half of it, and so on; one for all frames
+            or one each (n,).
 
     Returns:
         the n frames on arrival, and (n, 6, d) the twist of the arrival frame for each dimension while the starting
@@ -38,32 +39,39 @@ def carry(kind: Kind, frames: Frames, dimensions: Array, way: float) -> tuple[Fr
     return _over_plane(frames, dimensions, way) if kind == "plane" else _over_cone(frames, dimensions, way)
 
 
-def _over_plane(frames: Frames, dimensions: Array, way: float) -> tuple[Frames, Array]:
+def _over_plane(frames: Frames, dimensions: Array, way: float | Array) -> tuple[Frames, Array]:
     """Along b by the share `way` of the width, then about n by that share of the turn."""
-    width, turn = way * dimensions[:, 0], way * dimensions[:, 1]
-    p = frames.p + width[:, None] * frames.b
-    cosine, sine = np.cos(turn)[:, None], np.sin(turn)[:, None]
+    share = np.asarray(way)[..., None]
+    width, turn = share * dimensions[:, :1], share * dimensions[:, 1:]
+    p = frames.p + width * frames.b
+    cosine, sine = np.cos(turn), np.sin(turn)
     # Right-handed about n: t turns towards n x t = -b, b turns towards t.
     t = cosine * frames.t - sine * frames.b
     b = cosine * frames.b + sine * frames.t
     twist = np.zeros((len(p), 6, 2))
-    twist[:, 3:, 0] = way * frames.b
-    twist[:, :, 1] = way * rotation_twist(frames.n, p)
+    twist[:, 3:, 0] = share * frames.b
+    twist[:, :, 1] = share * rotation_twist(frames.n, p)
     return Frames(p, b, t, frames.n), twist
 
 
-def _over_cone(frames: Frames, dimensions: Array, way: float) -> tuple[Frames, Array]:
-    """About the axis by the share `way` of the sweep."""
-    radius, half_angle, sweep = dimensions[:, 0, None], dimensions[:, 1, None], way * dimensions[:, 2]
-    axis = np.cos(half_angle) * frames.t - np.sin(half_angle) * frames.n
+def _over_cone(frames: Frames, dimensions: Array, way: float | Array) -> tuple[Frames, Array]:
+    """About the axis by the share `way` of the sweep.
+
+    The axis and b are square to each other, and with outward = b x axis they make a frame that turns in its own plane.
+    """
+    share = np.asarray(way)[..., None]
+    radius, half_angle, sweep = dimensions[:, :1], dimensions[:, 1:2], share * dimensions[:, 2:]
+    narrow, wide, cosine, sine = np.cos(half_angle), np.sin(half_angle), np.cos(sweep), np.sin(sweep)
+    axis, outward = narrow * frames.t - wide * frames.n, wide * frames.t + narrow * frames.n
+    b, outward = cosine * frames.b - sine * outward, cosine * outward + sine * frames.b
+    t, n = narrow * axis + wide * outward, narrow * outward - wide * axis
     centre = frames.p - radius * frames.n
-    t, n = rotate_about(axis, sweep, frames.t), rotate_about(axis, sweep, frames.n)
-    arrived = Frames(centre + radius * n, cross(t, n), t, n)
+    arrived = Frames(centre + radius * n, b, t, n)
     twist = np.zeros((len(t), 6, 3))
     twist[:, 3:, 0] = n - frames.n
     # Tilting the axis by the half angle is a rotation about -b at the start, undone about -b on arrival.
-    omega = arrived.b - frames.b
+    omega = b - frames.b
     twist[:, :3, 1] = omega
     twist[:, 3:, 1] = cross(centre, omega)
-    twist[:, :, 2] = way * rotation_twist(axis, centre)
+    twist[:, :, 2] = share * rotation_twist(axis, centre)
     return arrived, twist

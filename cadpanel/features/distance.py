@@ -14,15 +14,31 @@ from cadpanel.geometry.cone import (
     plane_distance,
     plane_inner,
 )
-from cadpanel.geometry.patch_under import patch_under
+from cadpanel.geometry.patch_under import HalfWay, half_way, patch_under
 
 
 def assign(walked: Walk, x: Array) -> IntArray:
     """(panels, m) the patch of each point x (3, panels, m); see `patch_under`."""
-    anchor, edges, feature = walked.anchor, walked.edges, walked.feature
-    if len(feature.patches) == 1:
+    if len(walked.feature.patches) == 1:
         return np.zeros(x.shape[1:], dtype=np.intp)
-    return patch_under(x, (anchor.p[:, 0], anchor.b[:, 0]), (edges.p, edges.b), feature.anchor)
+    return patch_under(x, middle(walked), (walked.edges.p, walked.edges.b))
+
+
+def middle(walked: Walk) -> HalfWay:
+    """The rulings at which panels have turned half of their way: the anchor's where one patch turns alone."""
+    feature, anchor, edges = walked.feature, walked.anchor, walked.edges
+    if sum(feature.curved) <= 1:
+        return HalfWay(anchor.p[:, 0], anchor.b[:, 0], np.full(len(walked.values), feature.anchor))
+    return half_way((edges.p, edges.t, edges.n), round_numbers(walked))
+
+
+def round_numbers(walked: Walk) -> tuple[Array, Array, Array]:
+    """(panels, k) radii, half angles and sweeps of the patches; 0 for planes."""
+    numbers = np.zeros((3, len(walked.values), len(walked.feature.patches)))
+    for i, curved in enumerate(walked.feature.curved):
+        if curved:
+            numbers[:, :, i] = walked.dimensions[i].values.T
+    return numbers[0], numbers[1], numbers[2]
 
 
 def patch_distance(walked: Walk, x: Array, patch: int) -> Array:

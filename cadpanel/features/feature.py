@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Self, get_args
 
 import numpy as np
@@ -18,7 +19,7 @@ from cadpanel.features.patch_checks import check_patch
 from cadpanel.features.patches import Patch
 from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Cuts, Points, Walk
-from cadpanel.features.walk import end_points, walk
+from cadpanel.features.walk import arc_rulings, end_points, walk
 from cadpanel.geometry.shape import PanelShape
 
 MOST_PATCHES = 64
@@ -51,6 +52,7 @@ class Feature:
         numbers: all numbers in the order: anchor, patches, cut of end 0, cut of end 1; lengths in mm until `in_units`.
         free: indices of the numbers that the fit may choose.
         tied: pairs of indices (number, the number whose value it takes).
+        own_numbers: for each patch where its numbers stand among `numbers`.
     """
 
     patches: tuple[Patch, ...]
@@ -60,6 +62,7 @@ class Feature:
     numbers: tuple[Number, ...] = field(repr=False)
     free: IntArray = field(repr=False, compare=False)
     tied: tuple[tuple[int, int], ...] = field(repr=False)
+    own_numbers: tuple[slice, ...] = field(repr=False, compare=False)
 
     def __init__(self, *patches: Patch, name: str | None = None, cuts: Cuts = "mitre") -> None:
         """Lay out the numbers, and refuse a chain in which some of them depend on the others.
@@ -95,6 +98,8 @@ class Feature:
         count = len(numbers)
         tied = tuple((count - 3 + i, count - 6 + i) for i in (1, 2)) if cuts == "parallel" else ()
         set_(self, "numbers", tuple(numbers))
+        stops = np.cumsum([len(_ANCHOR), *(len(patch.numbers()) for patch in patches)]).tolist()
+        set_(self, "own_numbers", tuple(slice(*pair) for pair in pairwise(stops)))
         set_(self, "tied", tuple(pair for pair in tied if numbers[pair[1]].fixed is None))
         bound = {number for number, _ in self.tied}
         free = [i for i, number in enumerate(numbers) if number.fixed is None and i not in bound]
@@ -136,8 +141,7 @@ class Feature:
 
     def patch_slice(self, patch: int) -> slice:
         """Where the numbers of one patch stand among `numbers`."""
-        start = len(_ANCHOR) + sum(len(other.numbers()) for other in self.patches[:patch])
-        return slice(start, start + len(self.patches[patch].numbers()))
+        return self.own_numbers[patch]
 
     def expand(self, unknowns: Array) -> Array:
         """(n, numbers) all numbers from the (n, free) unknowns; fixed and tied ones take their values."""
@@ -172,7 +176,7 @@ class Feature:
 
     def arcs(self, walked: Walk) -> Points:
         """The arc points (n, arcs, 3) of walked panels."""
-        return end_points(walked, walked.arcs)
+        return end_points(walked, arc_rulings(walked))
 
     def shapes(self, walked: Walk, placed: Placed) -> list[PanelShape]:
         """Walked panels in the coordinates of the reference's file, mm."""

@@ -12,7 +12,7 @@ from cadpanel.features.numbers import POWERS
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.rulings import PanelFeature
-from cadpanel.features.walk import end_points, walk
+from cadpanel.features.walk import arc_rulings, end_points, walk
 
 # A direction of the unknowns that moves nothing has a singular value below this share of the largest.
 NO_MOTION = 1e-9
@@ -67,8 +67,9 @@ def motions(feature: PanelFeature, values: Array) -> Array:
     may share it anywhere.
     """
     walked = walk(feature, values, derivatives=True)
-    at_rulings, at_arcs = (end_points(walked, rulings) for rulings in (walked.edges, walked.arcs))
-    rulings, arcs, last = walked.edges.p.shape[1], walked.arcs.p.shape[1], len(feature.patches)
+    inside = arc_rulings(walked)
+    at_rulings, at_arcs = (end_points(walked, rulings) for rulings in (walked.edges, inside))
+    rulings, arcs, last = walked.edges.p.shape[1], inside.p.shape[1], len(feature.patches)
     rows, arc = [], 0
     for patch, curved in enumerate(feature.curved):
         own = [end * rulings + ruling for end in (0, 1) for ruling in (patch, patch + 1)]

@@ -127,7 +127,7 @@ class Polygon:
         plane = Rulings(p, axes[:, None, :, 0], axes[:, None, :, 1], axes[:, None, :, 2], twist)
         empty = np.zeros((panels, 0, 3))
         none = Rulings(empty, empty, empty, empty, None if twist is None else twist[:, :0])
-        return Walk(self, values, (), plane, none, plane, none)
+        return Walk(self, values, (), plane, none, plane)
 
     def corners(self, walked: Walk) -> Points:
         """The corners (n, corners, 3) of walked panels."""

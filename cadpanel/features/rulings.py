@@ -132,7 +132,6 @@ class Walk:
         anchor: the ruling in the middle of the anchor patch (R = 1).
         edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
         carriers: per patch the ruling that its radius is measured at (R = k).
-        arcs: rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
     """
 
     feature: PanelFeature
@@ -141,7 +140,6 @@ class Walk:
     anchor: Rulings
     edges: Rulings
     carriers: Rulings
-    arcs: Rulings
 
 
 @dataclass(frozen=True, slots=True)

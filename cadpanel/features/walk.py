@@ -51,7 +51,6 @@ def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
     start = _anchor(feature, values, derivatives)
     last = len(feature.patches) - 1
     edges: dict[int, _Step] = {}
-    arcs: list[_Step] = []
     for side in (-1, 1):
         step = start.carry(feature, feature.anchor, dimensions[feature.anchor], 0.5 * side)
         edges[feature.anchor + (side > 0)] = step
@@ -61,24 +60,48 @@ def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
             edges[patch + (side > 0)] = step
             patch += side
     carriers = [start if i == feature.anchor else edges[i if i > feature.anchor else i + 1] for i in range(last + 1)]
-    for i, patch_spec in enumerate(feature.patches):
-        if patch_spec.kind != "plane":
-            arcs += [_inside(feature, i, carriers[i], dimensions[i], share) for share in ARC_SHARES]
     return Walk(
         feature,
         values,
         dimensions,
-        _stack([start], start),
-        _stack([edges[i] for i in range(last + 2)], start),
-        _stack(carriers, start),
-        _stack(arcs, start),
+        _stack([start]),
+        _stack([edges[i] for i in range(last + 2)]),
+        _stack(carriers),
     )
 
 
-def _inside(feature: PanelFeature, patch: int, carrier: _Step, dimensions: Dimensions, share: float) -> _Step:
-    if patch == feature.anchor:
-        return carrier.carry(feature, patch, dimensions, share - 0.5)
-    return carrier.carry(feature, patch, dimensions, share if patch > feature.anchor else share - 1.0)
+def arc_rulings(walked: Walk) -> Rulings:
+    """The rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
+
+    All of a patch in one go; only seams ask for them, and half of the time of a walk would go by here.
+    """
+    parts = [_inside(walked, i) for i, curved in enumerate(walked.feature.curved) if curved]
+    if not parts:
+        return _none(walked)
+    p, b, t, n = (np.concatenate([getattr(part, axis) for part in parts], axis=1) for axis in "pbtn")
+    twists = [part.twist for part in parts if part.twist is not None]
+    return Rulings(p, b, t, n, np.concatenate(twists, axis=1) if twists else None)
+
+
+def _inside(walked: Walk, patch: int) -> Rulings:
+    """Those of one patch, carried on from the ruling that its radius is measured at."""
+    feature, carriers, panels, count = walked.feature, walked.carriers, len(walked.values), len(ARC_SHARES)
+    from_first = {feature.anchor: -0.5}.get(patch, 0.0 if patch > feature.anchor else -1.0)
+    shares = np.tile(np.array(ARC_SHARES) + from_first, panels)
+
+    def repeated(one: Array) -> Array:
+        return np.repeat(one, count, axis=0)
+
+    frames = Frames(*(repeated(getattr(carriers, axis)[:, patch]) for axis in "pbtn"))
+    dimensions, own = walked.dimensions[patch], feature.patch_slice(patch)
+    frames, moves = carry(feature.patches[patch].kind, frames, repeated(dimensions.values), shares)
+    p, b, t, n = (getattr(frames, axis).reshape(panels, count, 3) for axis in "pbtn")
+    if carriers.twist is None:
+        return Rulings(p, b, t, n, None)
+    moves = moves.reshape(panels, count, 6, -1)
+    twist = np.repeat(carriers.twist[:, patch, None], count, axis=1)
+    twist[..., own] += moves if dimensions.rates is None else moves @ dimensions.rates[:, None]
+    return Rulings(p, b, t, n, twist)
 
 
 def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
@@ -99,19 +122,16 @@ def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
     return _Step(frames, twist)
 
 
-def _stack(steps: list[_Step], like: _Step) -> Rulings:
-    if not steps:
-        return _none(like)
+def _stack(steps: list[_Step]) -> Rulings:
     p, b, t, n = (np.stack([getattr(step.frames, axis) for step in steps], axis=1) for axis in "pbtn")
     twists = [step.twist for step in steps if step.twist is not None]
     return Rulings(p, b, t, n, np.stack(twists, axis=1) if twists else None)
 
 
-def _none(like: _Step) -> Rulings:
+def _none(like: Walk) -> Rulings:
     """No rulings at all, for as many panels."""
-    panels = len(like.frames.p)
-    empty = np.zeros((panels, 0, 3))
-    twist = None if like.twist is None else np.zeros((panels, 0, *like.twist.shape[1:]))
+    empty = np.zeros((len(like.values), 0, 3))
+    twist = None if like.edges.twist is None else like.edges.twist[:, :0]
     return Rulings(empty, empty, empty, empty, twist)
 
 

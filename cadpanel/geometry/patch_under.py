@@ -2,34 +2,84 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.cone import beyond
+from cadpanel.geometry.frames import rotate_about
+from cadpanel.geometry.vectors import cross
+
+# Patches that do not turn at all count this much, radians: where none does, any of them may be the middle.
+_NO_TURN = 1e-12
 
 
-def patch_under(x: Array, middle: tuple[Array, Array], rulings: tuple[Array, Array], anchor: int) -> IntArray:
+@dataclass(frozen=True, slots=True)
+class HalfWay:
+    """The rulings at which n panels have turned half of their way.
+
+    Attributes:
+        p: (n, 3) a point on each.
+        b: (n, 3) its binormal.
+        patch: (n,) the patch that it lies on.
+    """
+
+    p: Array
+    b: Array
+    patch: IntArray
+
+
+def half_way(rulings: tuple[Array, Array, Array], numbers: tuple[Array, Array, Array]) -> HalfWay:
+    """The rulings at which panels have turned half of their way, whichever way each patch turns.
+
+    Args:
+        rulings: points, directions and normals (n, k, 3) of the rulings that the k patches begin with, or more.
+        numbers: radii, half angles and sweeps (n, k); 0 for planes. Some patch is curved.
+    """
+    radius, half_angle, sweep = numbers
+    turned = np.cumsum(np.where(radius != 0.0, np.abs(sweep) + _NO_TURN, 0.0), axis=1)
+    half = 0.5 * turned[:, -1:]
+    patch = np.argmax(turned >= half, axis=1)
+    rows = np.arange(len(turned))
+    before = np.where(patch > 0, turned[rows, patch - 1], 0.0)
+    share = (half[:, 0] - before) / (turned[rows, patch] - before)
+    p, t, n = (axis[rows, patch] for axis in rulings)
+    own, narrow = radius[rows, patch, None], half_angle[rows, patch, None]
+    axis = np.cos(narrow) * t - np.sin(narrow) * n
+    turn = share * sweep[rows, patch]
+    turned_t, turned_n = rotate_about(axis, turn, t), rotate_about(axis, turn, n)
+    return HalfWay(p + own * (turned_n - n), cross(turned_t, turned_n), patch)
+
+
+def patch_under(x: Array, middle: HalfWay, rulings: tuple[Array, Array]) -> IntArray:
     """(panels, m) the patch of each point x (3, panels, m).
 
-    A point belongs to the patch between whose bounding rulings its foot point falls. Walks outwards from the ruling in
-    the middle of the anchor patch: a point that is beyond one ruling may be beyond the next. Asking in this order keeps
-    folds of up to half a turn apart, whose far flange lies behind the near ruling's plane.
+    A point belongs to the patch between whose bounding rulings its foot point falls. Walks outwards from the ruling at
+    which the panel has turned half of its way: a point that is beyond one ruling may be beyond the next. Asking in this
+    order keeps folds of up to half a turn apart, whose far flange lies behind the near ruling's plane. From any other
+    ruling, one in the middle of the first of two cones say, a point on a flange further than a quarter turn away would
+    change sides, and its distance leap.
 
     Args:
         x: the points.
-        middle: points and binormals (panels, 3) of the rulings in the middle of the anchor patch.
+        middle: where the walk begins.
         rulings: points and binormals (panels, k + 1, 3) of the rulings that bound the k patches.
-        anchor: index of the anchor patch.
     """
     p, b = rulings
-    right = beyond(x, *middle)
-    patch = np.full(right.shape, anchor, dtype=np.intp)
+    right = beyond(x, middle.p, middle.b)
+    begin = middle.patch[:, None]
+    patch = np.broadcast_to(begin, right.shape).copy()
+    last = p.shape[1] - 1
+    past = {i: beyond(x, p[:, i], b[:, i]) for i in range(1, last)}
     passed = right
-    for i in range(anchor + 1, p.shape[1] - 1):
-        passed = passed & beyond(x, p[:, i], b[:, i])
-        patch += passed
+    for i in range(int(middle.patch.min()) + 1, last):
+        asked = i > begin
+        passed = passed & (past[i] | ~asked)
+        patch += passed & asked
     passed = ~right
-    for i in range(anchor, 0, -1):
-        passed = passed & ~beyond(x, p[:, i], b[:, i])
-        patch -= passed
+    for i in range(int(middle.patch.max()), 0, -1):
+        asked = i <= begin
+        passed = passed & ~(past[i] & asked)
+        patch -= passed & asked
     return patch

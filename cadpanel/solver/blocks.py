@@ -43,6 +43,12 @@ class Normal:
         """An empty model to add to."""
         return Normal(np.zeros((count, size)), np.zeros((count, size, size)), np.zeros((pairs, size, size)))
 
+    def where(self, chosen: BoolArray, other: Normal) -> Normal:
+        """The model of blocks none of which is coupled: of those `chosen` (count,) the other's."""
+        gradient = np.where(chosen[:, None], other.gradient, self.gradient)
+        diagonal = np.where(chosen[:, None, None], other.diagonal, self.diagonal)
+        return Normal(gradient, diagonal, self.coupling)
+
     def without(self, held: BoolArray, pairs: IntArray) -> Normal:
         """The model of a step that leaves the unknowns `held` (count, size) where they are."""
         free = ~held

@@ -75,12 +75,14 @@ class Solution:
         cost: (components,) per connected component.
         converged: (components,) whether it stopped by itself within the iterations.
         iterations: linear systems solved.
+        damping: (components,) at the end, to go on with.
     """
 
     unknowns: Array
     cost: Array
     converged: BoolArray
     iterations: int
+    damping: Array
 
     @property
     def stopped(self) -> Stop:
@@ -88,14 +90,14 @@ class Solution:
         return Stop.AT_REST if self.converged.all() else Stop.STEP_LIMIT
 
 
-def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float = 1e-3) -> Solution:
+def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float | Array = 1e-3) -> Solution:
     """Minimise the model's cost from `start` (count, size).
 
     Args:
         model: the sum of squares.
         start: where to begin; its cost must be finite.
         stopping: when to stop.
-        damping: the first damping, relative to the diagonal of J^T J.
+        damping: the first damping, relative to the diagonal of J^T J; one for all, or one a component (components,).
     """
     pattern = model.pattern
     component, count = pattern.component, pattern.components
@@ -105,12 +107,13 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
 
     bounds = model.bounds
     unknowns = start.copy() if bounds is None else bounds.clip(start)
-    booked, normal = model.linearize(unknowns)
-    mu, growth = np.full(count, damping), np.full(count, 2.0)
+    now = _Tried(unknowns, *model.linearize(unknowns))
+    mu, growth = np.zeros(count) + damping, np.full(count, 2.0)
     done = np.zeros(count, dtype=bool)
     iterations = 0
     while iterations < stopping.iterations and not done.all():
         iterations += 1
+        unknowns, booked, normal = now.unknowns, now.cost, now.normal
         scale = np.einsum("bii->bi", normal.diagonal)
         scale = mu[component, None] * np.maximum(scale, _LEAST_SCALE * scale.max(axis=1, keepdims=True))
         bounded = bounded_step(pattern, normal, scale, unknowns, bounds)
@@ -121,28 +124,20 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         before, hoped = per_component(booked), per_component(bounded.promised)
         # Cut at a bound a long step may lead uphill; that is too little damping and no sign of rest.
         hoped[(hoped <= 0.0) & (per_component(bounded.cut) > 0.0)] = np.inf
-        trial = unknowns + bounded.step
         # Most steps are good, so the next model is worked out at once: it costs little more than the cost alone.
         last = iterations == stopping.iterations
-        cost, ahead = _tried(model, trial, last)
-        gain = _gain(before, per_component(cost), hoped)
+        ahead = _tried(model, unknowns + bounded.step, last)
+        gain = _gain(before, per_component(ahead.cost), hoped)
         failed = (gain <= 0.0) & ~done
         if failed.any():
-            harm = _gain(pattern.around(booked), pattern.around(cost), pattern.around(bounded.promised)) <= 0.0
-            trial = np.where((failed[component] & harm)[:, None], unknowns, trial)
-            cost, ahead = _tried(model, trial, last)
-            stuck = failed & ~(per_component(cost) < before)
-            if (stuck[component] & ~harm).any() and not stuck.all():
-                trial = np.where(stuck[component, None], unknowns, trial)
-                cost, ahead = _tried(model, trial, last)
-        better = (per_component(cost) < before) & ~done
+            ahead = _spared(model, now, ahead, failed, bounded.promised, last)
+        better = (per_component(ahead.cost) < before) & ~done
         mu, growth = _damp(mu, growth, gain, failed)
         # Refused again and again: rounding is all that is left of this component.
         done |= (hoped <= stopping.cost * before) | (mu >= _MOST_DAMPING)
         if better.any():
-            unknowns, booked = trial, cost
-            normal = normal if ahead is None else ahead
-    return Solution(unknowns, per_component(booked), done, iterations)
+            now = ahead
+    return Solution(now.unknowns, per_component(now.cost), done, iterations, mu)
 
 
 def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Array, Array]:
@@ -152,11 +147,47 @@ def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Arr
     return mu, np.where(failed, np.minimum(growth * 2.0, _MOST_GROWTH), 2.0)
 
 
-def _tried(model: Model, trial: Array, last: bool) -> tuple[Array, Normal | None]:
-    """Cost and model at a trial, which may make no sense: its cost is infinite then. After the last step no model."""
+@dataclass(frozen=True, slots=True)
+class _Tried:
+    """Unknowns (count, size), their cost (count,), infinite where they make no sense, and their model.
+
+    After the last step nobody asks for a model any more, and there is none.
+    """
+
+    unknowns: Array
+    cost: Array
+    model: Normal | None
+
+    @property
+    def normal(self) -> Normal:
+        """The model."""
+        assert self.model is not None, "there are no steps after the last one"
+        return self.model
+
+
+def _tried(model: Model, trial: Array, last: bool) -> _Tried:
     with np.errstate(all="ignore"):
         cost, normal = (model.cost(trial), None) if last else model.linearize(trial)
-    return np.where(np.isfinite(cost), cost, np.inf), normal
+    return _Tried(trial, np.where(np.isfinite(cost), cost, np.inf), normal)
+
+
+def _spared(model: Model, now: _Tried, ahead: _Tried, failed: BoolArray, promised: Array, last: bool) -> _Tried:
+    """Where a step leads that is undone in components (components,) in which it failed, wherever it did harm."""
+    pattern = model.pattern
+    component = pattern.component
+    if not len(pattern.pairs):
+        # Every block is a component and was tried by itself: nothing has to be worked out again.
+        back = failed[component]
+        unknowns = np.where(back[:, None], now.unknowns, ahead.unknowns)
+        kept = None if ahead.model is None else ahead.model.where(back, now.normal)
+        return _Tried(unknowns, np.where(back, now.cost, ahead.cost), kept)
+    harm = _gain(pattern.around(now.cost), pattern.around(ahead.cost), pattern.around(promised)) <= 0.0
+    ahead = _tried(model, np.where((failed[component] & harm)[:, None], now.unknowns, ahead.unknowns), last)
+    costs = (np.bincount(component, one.cost, minlength=pattern.components) for one in (ahead, now))
+    stuck = failed & ~np.less(*costs)
+    if (stuck[component] & ~harm).any() and not stuck.all():
+        ahead = _tried(model, np.where(stuck[component, None], now.unknowns, ahead.unknowns), last)
+    return ahead
 
 
 def _gain(before: Array, after: Array, promised: Array) -> Array:

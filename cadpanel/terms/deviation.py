@@ -180,4 +180,4 @@ def _part(walked: Walk, part: slice) -> Walk:
 
     w = walked
     dimensions = tuple(one.take(part) for one in w.dimensions)
-    return Walk(w.feature, w.values[part], dimensions, cut(w.anchor), cut(w.edges), cut(w.carriers), cut(w.arcs))
+    return Walk(w.feature, w.values[part], dimensions, cut(w.anchor), cut(w.edges), cut(w.carriers))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
-from cadpanel.features.rulings import PanelFeature, Points, Walk
+from cadpanel.features.rulings import Points, Walk
 from cadpanel.terms.surfaces import CutPlanes, Surfaces, cut_planes_of, surfaces_of
 
 
@@ -27,14 +27,21 @@ class State:
     walks: tuple[Walk, ...]
 
     @cached_property
+    def own_corners(self) -> tuple[Points, ...]:
+        """For each group the corners (n, corners, 3), and their derivatives (n, corners, 3, N) by its numbers."""
+        pairs = zip(self.layout.groups, self.walks, strict=True)
+        return tuple(group.feature.corners(walked) for group, walked in pairs)
+
+    @cached_property
     def corners(self) -> Points:
         """Corners (panels, corners, 3), and their derivatives (panels, corners, 3, size) by the unknowns."""
-        return self._points(lambda feature, walked: feature.corners(walked))
+        return self._points(self.own_corners)
 
     @cached_property
     def arcs(self) -> Points:
         """Points inside the conic arcs of the ends (panels, arcs, 3), and their derivatives."""
-        return self._points(lambda feature, walked: feature.arcs(walked))
+        pairs = zip(self.layout.groups, self.walks, strict=True)
+        return self._points([group.feature.arcs(walked) for group, walked in pairs])
 
     @cached_property
     def normals(self) -> Points:
@@ -59,8 +66,7 @@ class State:
         """The planes that cut the ends of all panels."""
         return cut_planes_of(self.layout, self.walks)
 
-    def _points(self, of: Callable[[PanelFeature, Walk], Points]) -> Points:
-        found = [of(group.feature, walked) for group, walked in zip(self.layout.groups, self.walks, strict=True)]
+    def _points(self, found: Sequence[Points]) -> Points:
         position = self.layout.gather([points.position for points in found])
         slopes = [
             group.feature.by_unknowns(points.jacobian)

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
-from cadpanel.features.distance import patch_outer
+from cadpanel.features.distance import middle, patch_outer, round_numbers
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
@@ -25,10 +25,11 @@ class Surfaces:
         radius, half_angle: (panels, K), 0 for planes.
         curved: (panels, K) whether it is a cone or cylinder.
         outer: (panels, K, 8, size) how their inner numbers follow the unknowns, or None without derivatives.
-        count, anchor: (panels,) number of patches, and which of them the walk starts in.
+        count: (panels,) number of patches.
         sweep: (panels, K), 0 for planes.
         ruling_p, ruling_b, ruling_t, ruling_n: (panels, K + 1, 3) the bounding rulings; of a polygon its plane, once.
-        anchor_p, anchor_b: (panels, 3) the ruling in the middle of the anchor patch.
+        middle: (panels,) the patch on which the panel has turned half of its way.
+        middle_p, middle_b: (panels, 3) the ruling there.
     """
 
     p: Array
@@ -40,32 +41,32 @@ class Surfaces:
     curved: BoolArray
     outer: Array | None
     count: IntArray
-    anchor: IntArray
+    middle: IntArray
     ruling_p: Array
     ruling_b: Array
     ruling_t: Array
     ruling_n: Array
-    anchor_p: Array
-    anchor_b: Array
+    middle_p: Array
+    middle_b: Array
 
     def assign(self, x: Array, panel: IntArray) -> IntArray:
-        """(g, q) the patch of each point x (g, q, 3) in the frame of its panel (g,); see `features.skin.assign`."""
+        """(g, q) the patch of each point x (g, q, 3) in the frame of its panel (g,); see `features.distance.assign`."""
 
         def past(p: Array, b: Array) -> BoolArray:
             return np.asarray(dot(x - p[:, None], b[:, None]) > 0.0)
 
-        right = past(self.anchor_p[panel], self.anchor_b[panel])
-        anchor, count = self.anchor[panel, None], self.count[panel, None]
+        right = past(self.middle_p[panel], self.middle_b[panel])
+        middle, count = self.middle[panel, None], self.count[panel, None]
         beyond = [past(self.ruling_p[panel, i], self.ruling_b[panel, i]) for i in range(self.p.shape[1])]
-        patch = np.broadcast_to(anchor, right.shape).copy()
+        patch = np.broadcast_to(middle, right.shape).copy()
         passed = right
         for i in range(1, self.p.shape[1]):
-            asked = (i > anchor) & (i < count)
+            asked = (i > middle) & (i < count)
             passed = np.where(asked, passed & beyond[i], passed)
             patch += asked & passed
         passed = ~right
         for i in range(self.p.shape[1] - 1, 0, -1):
-            asked = i <= anchor
+            asked = i <= middle
             passed = np.where(asked, passed & ~beyond[i], passed)
             patch -= asked & passed
         return patch
@@ -99,10 +100,8 @@ def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:
 def _surfaces(walked: Walk) -> Surfaces:
     feature, carriers = walked.feature, walked.carriers
     panels, patches = carriers.p.shape[:2]
-    numbers = np.zeros((3, panels, patches))
-    for i, curved in enumerate(feature.curved):
-        if curved:
-            numbers[:, :, i] = walked.dimensions[i].values.T
+    radius, half_angle, sweep = round_numbers(walked)
+    begin = middle(walked)
     outer = None
     if carriers.twist is not None:
         outer = np.stack([feature.by_unknowns(patch_outer(walked, i)) for i in range(patches)], axis=1)
@@ -111,19 +110,19 @@ def _surfaces(walked: Walk) -> Surfaces:
         p=carriers.p,
         t=carriers.t,
         n=carriers.n,
-        radius=numbers[0],
-        half_angle=numbers[1],
-        sweep=numbers[2],
+        radius=radius,
+        half_angle=half_angle,
+        sweep=sweep,
         curved=np.broadcast_to(np.array(feature.curved), (panels, patches)),
         outer=outer,
         count=np.full(panels, patches),
-        anchor=np.full(panels, feature.anchor),
+        middle=begin.patch,
         ruling_p=rulings.p,
         ruling_b=rulings.b,
         ruling_t=rulings.t,
         ruling_n=rulings.n,
-        anchor_p=walked.anchor.p[:, 0],
-        anchor_b=walked.anchor.b[:, 0],
+        middle_p=begin.p,
+        middle_b=begin.b,
     )
 
 

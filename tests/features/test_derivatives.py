@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
+from cadpanel.features.walk import arc_rulings
 from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
 
 # Lengths in panel lengths, angles in radians.
@@ -95,7 +96,8 @@ def motions(of, values):
     rows = [
         slopes(points).reshape(len(values), -1, values.shape[1]) for points in (of.corners(walked), of.arcs(walked))
     ]
-    for rulings in (walked.anchor, walked.edges, walked.arcs):
+    for rulings in (walked.anchor, walked.edges, arc_rulings(walked)):
+        assert rulings.twist is not None
         turning = np.cross(rulings.twist[..., :3, :], rulings.n[..., None], axisa=-2, axisb=-2, axisc=-2)
         rows += [turning.reshape(len(values), -1, values.shape[1])]
     return of.by_unknowns(np.concatenate(rows, axis=1))

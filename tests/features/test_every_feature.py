@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.rulings import Rulings
-from cadpanel.features.walk import end_points
+from cadpanel.features.walk import arc_rulings, end_points
 from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
 from cadpanel.geometry.vectors import cross, dot
 from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
@@ -112,7 +112,7 @@ def test_a_ruling_that_leaves_its_tangent_plane_by_a_little_is_found():
 def test_corners_and_arc_points_lie_on_the_cut_planes_and_on_their_rulings(name, seed):
     walked = FEATURES[name].walk(random_values(FEATURES[name], seed), derivatives=False)
     m, s = cut_planes(walked)
-    for rulings in (walked.edges, walked.arcs):
+    for rulings in (walked.edges, arc_rulings(walked)):
         points = end_points(walked, rulings)
         assert points.jacobian is None
         count = rulings.p.shape[1]
@@ -130,9 +130,10 @@ def test_corners_and_arc_points_lie_on_the_cut_planes_and_on_their_rulings(name,
 def test_arc_points_lie_inside_the_curved_patches(name, seed):
     walked = FEATURES[name].walk(random_values(FEATURES[name], seed), derivatives=False)
     curved = [i for i, one in enumerate(FEATURES[name].curved) if one]
-    assert walked.arcs.p.shape[1] == len(curved) * len(ARC_SHARES)
+    inside = arc_rulings(walked)
+    assert inside.p.shape[1] == len(curved) * len(ARC_SHARES)
     for k, patch in enumerate(curved):
-        normals = walked.arcs.n[:, k * len(ARC_SHARES) : (k + 1) * len(ARC_SHARES)]
+        normals = inside.n[:, k * len(ARC_SHARES) : (k + 1) * len(ARC_SHARES)]
         first, last = walked.edges.n[:, patch, None], walked.edges.n[:, patch + 1, None]
         chain = np.concatenate([first, normals, last], axis=1)
         turned = np.linalg.norm(np.diff(chain, axis=1), axis=-1)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from cadpanel.features.distance import assign, skin_normals
 from cadpanel.features.panel_edges import ARC_SHARES
+from cadpanel.features.walk import arc_rulings
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.deviation import Deviation
 from tests.chains import CHAINS, FEATURES, POLYGONS, mixed_unknowns, problem_of
@@ -31,7 +32,8 @@ seeds = st.integers(0, 10_000)
 
 def points_on_patches(walked):
     """Points (panels, m, 3) inside the patches, and their patches (m,); first those of the arcs' rulings."""
-    points, patches = [walked.arcs.p], [i for i, one in enumerate(walked.feature.curved) if one for _ in ARC_SHARES]
+    points = [arc_rulings(walked).p]
+    patches = [i for i, one in enumerate(walked.feature.curved) if one for _ in ARC_SHARES]
     for i, curved in enumerate(walked.feature.curved):
         if not curved:
             points.append(0.5 * (walked.edges.p[:, i] + walked.edges.p[:, i + 1])[:, None])
@@ -54,7 +56,8 @@ def test_every_sample_belongs_to_the_patch_on_which_its_foot_lies(name, seed):
     assert np.array_equal(found, assign(walked, x))
     assert np.abs(distance).max() <= 1e-12
     normals = skin_normals(walked, x, assign(walked, x))
-    assert np.abs(normals[:, : walked.arcs.n.shape[1]] - walked.arcs.n).max(initial=0.0) <= 1e-12
+    inside = arc_rulings(walked)
+    assert np.abs(normals[:, : inside.n.shape[1]] - inside.n).max(initial=0.0) <= 1e-12
     # Off the skin by a height, along the normal: that height is the distance.
     height = np.random.default_rng(seed).uniform(-0.02, 0.02, stacked.shape[:2])
     lifted = Deviation(np.moveaxis(stacked + height[..., None] * normals, 2, 0), np.ones(stacked.shape[:2]))

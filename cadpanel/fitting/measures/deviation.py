@@ -9,9 +9,8 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.edges import curved, round_numbers
 from cadpanel.geometry.cone import cone_distance, plane_distance
-from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.panel import Panel
-from cadpanel.geometry.patch_under import patch_under
+from cadpanel.geometry.patch_under import half_way, patch_under
 from cadpanel.geometry.vectors import cross
 from cadpanel.reference.model import Reference
 
@@ -64,31 +63,14 @@ def _distances(shapes: Sequence[Panel], kinds: Sequence[bool], points: Array) ->
 
     if len(kinds) == 1:
         return to(0)
-    anchor = middle_patch(kinds)
-    own = p[:, anchor], t[:, anchor], n[:, anchor]
-    half_way = _half_way(*own, radius[:, anchor], half_angle[:, anchor], sweep[:, anchor])
-    patch = patch_under(x, half_way, (p, cross(t, n)), anchor)
+    patch = patch_under(x, half_way((p, t, n), (radius, half_angle, sweep)), (p, cross(t, n)))
     distance = np.zeros(patch.shape)
     for i in range(len(kinds)):
         distance = np.where(patch == i, to(i), distance)
     return distance
 
 
-def middle_patch(kinds: Sequence[bool]) -> int:
-    """The curved patch that is nearest to the middle of a chain, where its walk starts."""
-    middle = (len(kinds) - 1) / 2
-    round_ones = [i for i, is_curved in enumerate(kinds) if is_curved]
-    return min(round_ones or range(len(kinds)), key=lambda i: abs(i - middle))
-
-
 def _rulings(shape: Panel) -> tuple[Array, Array, Array]:
     """Points, directions and normals (k + 1, 3) of a panel's rulings; where there is one patch of its first, once."""
     p, t, n = shape.rulings()
     return (p[:1], t[:1], n[:1]) if len(shape.patches) == 1 else (p, t, n)
-
-
-def _half_way(p: Array, t: Array, n: Array, radius: Array, half_angle: Array, sweep: Array) -> tuple[Array, Array]:
-    """Point and binormal (n, 3) of the ruling half-way over a cone patch that begins with the ruling p, t, n."""
-    axis = np.cos(half_angle)[:, None] * t - np.sin(half_angle)[:, None] * n
-    turned_t, turned_n = rotate_about(axis, 0.5 * sweep, t), rotate_about(axis, 0.5 * sweep, n)
-    return p + radius[:, None] * (turned_n - n), cross(turned_t, turned_n)

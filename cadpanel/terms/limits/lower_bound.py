@@ -55,5 +55,4 @@ class LackTerm(HeldTerm):
         return (self._least - lengths)[..., None], (jacobian,)
 
     def _lengths(self, state: State, *, derivatives: bool) -> tuple[Array, Array]:
-        walked = state.walks[self._place]
-        return self.lengths(walked, self._group.feature.corners(walked), derivatives=derivatives)
+        return self.lengths(state.walks[self._place], state.own_corners[self._place], derivatives=derivatives)

@@ -23,10 +23,12 @@ class Known(LackTerm):
 
 
 def made(lengths, slopes) -> tuple[Known, Any]:
-    feature = SimpleNamespace(corners=lambda _: None, by_unknowns=lambda rates: rates)
+    feature = SimpleNamespace(by_unknowns=lambda rates: rates)
     group: Any = SimpleNamespace(panels=PANELS, feature=feature)
     state = SimpleNamespace(
-        walks=[SimpleNamespace(lengths=lengths, slopes=slopes)], layout=SimpleNamespace(size=slopes.shape[-1] + 1)
+        walks=[SimpleNamespace(lengths=lengths, slopes=slopes)],
+        own_corners=[None],
+        layout=SimpleNamespace(size=slopes.shape[-1] + 1),
     )
     return Known(group, 0, 3, LEAST, lengths.shape[1]), state
 

@@ -1,30 +1,38 @@
-"""A strip cut into a number of panels of equal length along it: the paper's way."""
+"""A strip cut along its length into equal panels: so many, or as few as are no longer than allowed."""
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import dataclass
 
-from cadpanel.arrays import Array
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels
+from cadpanel.brep.cutting.divisions import division_of
+from cadpanel.brep.cutting.fewest import fewest
 from cadpanel.brep.cutting.lip_band import lip_band
-from cadpanel.brep.cutting.smallest_panel import require_room
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.brep.skin.iso_strip import find_lanes
-from cadpanel.brep.skin.ring import find_ring
-from cadpanel.brep.skin.split_by_planes import cut_by_planes
-from cadpanel.brep.skin.strip import find_strip
-from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import arc_length
-from cadpanel.geometry.vectors import norm
+from cadpanel.reference.settings import Seams
 
-# Points of a long edge by which its length is measured.
-EDGE_POINTS = 257
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lengths:
+    """How a strip is divided.
+
+    Attributes:
+        count: number of panels; None where their length tells it.
+        longest: length that no panel may exceed along either long edge, mm.
+        seams: which planes part them.
+        most_turn: by how much one of conjugate seams may be turned from square, radians.
+    """
+
+    count: int | None
+    longest: float | None
+    seams: Seams
+    most_turn: float
 
 
 def cut_lip(
-    surface: Surface, count: int, width: float, source: str, tolerance: float
+    surface: Surface, how: Lengths, width: float, source: str, tolerance: float
 ) -> tuple[tuple[CutPanel, ...], tuple[str, ...]]:
-    """Cut the band of a width about a strip's lip, mm, where its long edges have equal parts.
+    """Cut the band of a width about a strip's lip, mm, along its length.
 
     Returns:
         The panels, and notes.
@@ -33,19 +41,15 @@ def cut_lip(
         ReferenceFileError: the surface is no strip, has no lip that could be meant, or cannot be cut.
     """
     band, notes = lip_band(surface, width, source, tolerance)
-    return cut_lengths(band, count, source, tolerance), notes
+    return cut_lengths(band, how, source, tolerance), notes
 
 
-def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> tuple[CutPanel, ...]:
-    """Cut a strip where the mean length of its two long edges has equal parts.
-
-    Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean,
-    as are faces that follow each other round a ring, no wider than it is long, in rows with common joints. All others
-    are cut by planes through the two long edges, square to the strip.
+def cut_lengths(surface: Surface, how: Lengths, source: str, tolerance: float) -> tuple[CutPanel, ...]:
+    """Cut a strip where the mean length of its two long edges has equal parts; with level seams, its height.
 
     Args:
         surface: what to cut.
-        count: number of panels.
+        how: into what.
         source: the reference's name.
         tolerance: how far faces that meet may lie apart, mm.
 
@@ -53,34 +57,11 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
         ReferenceFileError: the surface is no strip, or cannot be cut.
         SettingsError: it has no room for so many panels.
     """
-    what = f"the surface of {surface.numbers} of '{source}'"
-    lanes = find_lanes(surface)
-    parts = np.linspace(0.0, 1.0, count + 1)
-    if lanes is None or not lanes.outer:
-        ring = find_ring(surface)
-        if ring is not None and ring.length >= ring.width:
-            if count == 1:
-                raise ReferenceFileError(
-                    f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into 2 or more."
-                )
-            require_room([ring.longest], 0.0, count, what, tolerance)
-            return along_panels(surface.name, ring.cut(count, tolerance))
-        if ring is not None or lanes is not None:
-            raise ReferenceFileError(
-                f"T{what[1:]} is closed round its length, and a panel cannot go round: cut it both ways, with a grid."
-            )
-    if lanes is not None:
-        _require_room(lanes.edges(np.linspace(0.0, 1.0, EDGE_POINTS)), count, what, tolerance)
-        parts[1:-1] = lanes.at_lengths(parts[1:-1])
-        return along_panels(surface.name, lanes.cut(parts))
-    strip = find_strip(surface, source, tolerance)
-    _require_room(np.array(strip.edges), count, what, tolerance)
-    if count == 1:
-        return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
-    return along_panels(surface.name, cut_by_planes(surface, strip.planes(parts[1:-1]), source))
-
-
-def _require_room(edges: Array, count: int, what: str, tolerance: float) -> None:
-    """Refuse more panels than there is room for between two long edges, (2, q, 3) points."""
-    lengths = [float(arc_length(edge)[-1]) for edge in edges]
-    require_room(lengths, float(norm(edges[1] - edges[0]).min()), count, what, tolerance)
+    division = division_of(surface, how.seams, how.most_turn, source, tolerance)
+    count = how.count
+    if count is None:
+        assert how.longest is not None
+        count = fewest(
+            division.longest_panel, division.longest, how.longest, f"the surface of {surface.numbers} of '{source}'"
+        )
+    return along_panels(surface.name, division.cut(count))

@@ -30,6 +30,12 @@ GRID = 49
 ROLLED = 0.25
 LEAST_TURN = np.radians(10.0)
 
+# Curvature that leaves no step worth mention, 1/mm: 0.3 mm between panels of 2 m by 0.7 m.
+STRAIGHT = 2e-7
+# Places along a strip at which leans are told, and how close two of them count as alike, degrees.
+LEAN_PLACES = 17
+ALIKE = 0.1
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeamBending:
@@ -48,6 +54,43 @@ class SeamBending:
     conjugate: Array
     leans: Array
     weights: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamLean:
+    """How far seams square to a strip are from where flat panels could meet without a step.
+
+    Attributes:
+        mean: all over the strip, degrees.
+        largest: on the side of the strip and at the place where it is most, degrees.
+        at: that place, from the strip's beginning, mm.
+    """
+
+    mean: float
+    largest: float
+    at: float
+
+
+def seam_lean(bending: SeamBending, length: float) -> SeamLean:
+    """The leans of a strip of a length, mm.
+
+    Every point counts as much as it bends, and one that does not bend leans by 0: there any seam will do.
+    """
+    bent = norm(bending.conjugate)
+    weights = bending.weights * (bent + STRAIGHT)
+    leans = np.degrees(bending.leans) * bent**2 / (bent**2 + STRAIGHT**2)
+    at, width = np.linspace(0.0, 1.0, LEAN_PLACES), 1.0 / (LEAN_PLACES - 1)
+    near = weights * np.maximum(1.0 - np.abs(bending.places - at[:, None]) / width, 0.0)
+    sums = [
+        (near[:, side] @ leans[side], near[:, side].sum(axis=1)) for side in (bending.sides < 0.0, bending.sides >= 0.0)
+    ]
+    means = np.array([np.divide(of, by, out=np.zeros(LEAN_PLACES), where=by > 0.0) for of, by in sums])
+    most = means.max(axis=0)
+    # The first of those places that are equally bad: which of them rounding favours must not show.
+    first = int(np.argmax(most >= most.max() - ALIKE))
+    return SeamLean(
+        mean=float(weights @ leans / weights.sum()), largest=float(most.max()), at=float(at[first]) * length
+    )
 
 
 def seam_bending(surface: Surface, strip: Strip) -> SeamBending:

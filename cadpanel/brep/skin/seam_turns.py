@@ -20,13 +20,11 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.brep.skin.conjugate import SeamBending
+from cadpanel.brep.skin.conjugate import STRAIGHT, SeamBending
 from cadpanel.geometry.vectors import norm
 
 STATIONS = 65
 SQUARE, EVEN = 0.02, 0.25
-# Curvature that leaves no step worth mention, 1/mm: 0.3 mm between panels of 2 m by 0.7 m. What is less turns no plane.
-STRAIGHT = 2e-7
 # By which part of its length a panel may be shorter at a long edge.
 SHORTER = 0.25
 SWEEPS = 400

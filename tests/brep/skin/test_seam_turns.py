@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.brep.skin.conjugate import SeamBending
-from cadpanel.brep.skin.seam_turns import EVEN, SHORTER, SQUARE, STATIONS, STRAIGHT, seam_turns
+from cadpanel.brep.skin.conjugate import STRAIGHT, SeamBending
+from cadpanel.brep.skin.seam_turns import EVEN, SHORTER, SQUARE, STATIONS, seam_turns
 
 seeds = st.integers(0, 2**32 - 1)
 LENGTH, WIDTH = 12_000.0, 1500.0

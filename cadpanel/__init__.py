@@ -26,7 +26,7 @@ from cadpanel.errors import (
 )
 
 if TYPE_CHECKING:
-    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
+    from cadpanel.api import compare, deliver, fit, inspect, read, study, to_build123d, to_cadquery, write_step
     from cadpanel.atomic.cone import fit_cone
     from cadpanel.atomic.cylinder import fit_cylinder
     from cadpanel.atomic.plane import fit_plane
@@ -85,6 +85,7 @@ __all__ = [
     "fit_plane",
     "inspect",
     "read",
+    "study",
     "to_build123d",
     "to_cadquery",
     "verify",
@@ -93,7 +94,7 @@ __all__ = [
 
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
-        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
+        "api": ("compare", "deliver", "fit", "inspect", "read", "study", "to_build123d", "to_cadquery", "write_step"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
         "delivery.verify": ("Verification", "verify"),

@@ -80,7 +80,8 @@ class FitSettings:
     Attributes:
         feature: name of the shape feature in the catalogue; "auto" for the cheapest one that stays within
             `max_deviation`, panel by panel; or a `Feature` composed by the user.
-        max_deviation: mm that no panel may deviate from its reference where the feature is chosen automatically.
+        max_deviation: mm that no panel may deviate from its reference: by it features are chosen automatically; of a
+            feature that is named it is judged whether it keeps to it.
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
         method: "local", "two_stage" or "concurrent".
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams.
@@ -101,7 +102,9 @@ class FitSettings:
     max_deviation: float | None = setting(
         None,
         within=Range(what="largest deviation", least=1e-3, unit=" mm", empty=True),
-        option=Option(metavar="MM", help="With --feature auto: how far a panel may lie from the reference anywhere."),
+        option=Option(
+            metavar="MM", help="How far a panel may lie from the reference; chooses with --feature or --divide auto."
+        ),
     )
     tilt: Tilt = setting(
         "free", option=Option(help="May the planes that cut the ends tilt into a mitre, or stand upright?")
@@ -164,10 +167,8 @@ class FitSettings:
         if self.method not in get_args(Method):
             raise SettingsError(f"there is no method '{self.method}'; choose one of: {', '.join(get_args(Method))}")
         check_ranges(self)
-        if (self.feature == AUTO) != (self.max_deviation is not None):
-            raise SettingsError(
-                f"the feature '{AUTO}' and a largest deviation go together: the first is chosen by the second"
-            )
+        if self.feature == AUTO and self.max_deviation is None:
+            raise SettingsError(f"the feature '{AUTO}' is chosen by a largest deviation: give one, too")
         if not isinstance(self.feature, str):
             for limit in LIMITS:
                 limit.check_feature(self.feature, limit.allowed(self))

@@ -43,8 +43,13 @@ class Concurrent(Method):
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
-        """Fit all panels from their local fits, and from as many restarts as are asked for."""
+        """Fit all panels from their local fits, and from as many restarts as are asked for.
+
+        With a second start, the end of a fit under other tolerances, it goes on from there instead.
+        """
         local = starts[0]
+        if len(starts) > 1:
+            return _hold_seams(problem, starts[1], local, settings, progress, gathered=True)
         return best_of_starts(
             lambda start: _hold_seams(problem, start, local, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
@@ -58,19 +63,26 @@ class Concurrent(Method):
 
 
 def _hold_seams(
-    problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
+    problem: Problem,
+    start: Array,
+    local: Array,
+    settings: FitSettings,
+    progress: Progress | None,
+    *,
+    gathered: bool = False,
 ) -> Fitted:
+    """Hold every seam from a start, whose corners lie together already or are gathered first."""
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
     limits = problem.limits(settings, MARGIN)
-    gathered, iterations = _gather(problem, gaps, limits, start)
-    state = problem.state(gathered)
+    begin, iterations = (start, 0) if gathered else _gather(problem, gaps, limits, start)
+    state = problem.state(begin)
     for gap in gaps:
         gap.hold.weight[:] = 0.0
         if isinstance(gap, ArcGap):
             gap.straighten(state)
             gap.hold.radius = _ARC_SHARE * gap.hold.radius
     model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
-    found = held_within(problem, model, gathered, local=local, tell=progress)
+    found = held_within(problem, model, begin, local=local, tell=progress)
     iterations += found.iterations
     stopped = found.stopped
     # Measure whole seams, tighten those that are too wide, go on.

@@ -6,15 +6,12 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import fields, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel.errors import SettingsError
-from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import FitKeywords, FitSettings
@@ -30,11 +27,9 @@ if TYPE_CHECKING:
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.records.comparison import ComparisonModel
     from cadpanel.delivery.records.report import ReportModel
-    from cadpanel.delivery.records.study import StudyModel
     from cadpanel.delivery.settings import Schema
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
-    from cadpanel.studies.held_points import Progress as StudyProgress
     from cadpanel.studies.table1 import Progress as CompareProgress
 
 
@@ -166,73 +161,6 @@ def compare(
         if folder is not None:
             write_comparison(comparison, folder / COMPARISON)
     return comparison
-
-
-def study(
-    reference: Reference | str | Path,
-    *,
-    gaps: Sequence[float],
-    features: Sequence[str | PanelFeature] = ("plane-cone-plane",),
-    divides: Sequence[int] = (),
-    reading: ReferenceSettings | None = None,
-    settings: FitSettings | None = None,
-    out: str | Path | None = None,
-    overwrite: bool = False,
-    progress: StudyProgress | None = None,
-    **changes: Unpack[FitKeywords],
-) -> StudyModel:
-    """Fit every combination of gaps, features and numbers of panels: what a gap costs, and where it stops to pay.
-
-    No row is worse than a fit of its own, nor than what a row with a tighter gap holds already.
-
-    Args:
-        reference: a reference, or the file to be cut into each of the numbers of panels.
-        gaps: gap tolerances, mm.
-        features: names, or features of one's own.
-        divides: numbers of panels along each strip; none to take the reference as it is, or as `reading` cuts it.
-        reading: how a file is read.
-        settings: what all fits share.
-        out: folder for study.json, study.csv and, where matplotlib is installed, study.png and study.svg, written whole
-            or not at all; None to write nothing.
-        overwrite: replace what cadpanel wrote there before.
-        progress: told settings, reference, step (0 where a fit begins), largest excess over a tolerance, RMS deviation.
-        changes: settings to change.
-
-    Returns:
-        What study.json holds; its `rows` are the points.
-
-    Raises:
-        ReferenceFileError: the file cannot be read or cut.
-        SettingsError: a setting is out of its range, or a reference that is cut already is to be cut.
-        DeliveryError: the folder is refused or cannot be written.
-    """
-    from cadpanel.delivery.folder import delivery_folder
-    from cadpanel.delivery.records.study_rows import study_record
-    from cadpanel.delivery.study_files import write_study_files
-    from cadpanel.studies.trade_off import trade_off
-
-    if isinstance(reference, Reference):
-        if divides or reading is not None:
-            raise SettingsError(
-                "a reference is cut already: give the file to have it cut into several numbers of panels"
-            )
-        reads = [partial(_same, reference)]
-    else:
-        counts = [{"divide": count} for count in divides] or [{}]
-        how = [_changed(reading, cast("ReferenceKeywords", count)) for count in counts]
-        reads = [partial(read, reference, one) for one in how]
-    asked = _asked(settings, changes)
-    _require(gaps, Sequence, "the gaps are a list of numbers")
-    every = [replace(asked, feature=feature, gap_tolerance=gap) for feature in features for gap in dict.fromkeys(gaps)]
-    with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
-        found = study_record(trade_off(reads, every, progress))
-        if folder is not None:
-            write_study_files(found, folder)
-    return found
-
-
-def _same(reference: Reference) -> Reference:
-    return reference
 
 
 def deliver(

@@ -8,6 +8,7 @@ from OCP.gp import gp_Pln, gp_Pnt
 
 from cadpanel.brep.files.model import Label
 from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.studies import fewest_panels
 from tests.cli.conftest import Run
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip
@@ -138,3 +139,39 @@ def test_name_and_layer_with_a_comma_choose_their_faces(run: Run, tmp_path: Path
     answer = run("inspect", skin, "--faces", "roof, north")
     assert answer.code == 2
     assert """has no face 'north': it has faces 1 to 3; names roof, "roof, north"; layers "Skin, east".""" in answer.err
+
+
+def test_as_few_panels_as_hold_everything_are_found_and_what_was_tried_is_told(
+    run: Run, strip: Path, tmp_path: Path
+) -> None:
+    words = ("fit", strip, "--unit", "mm", "--divide", "auto", "--gap-tolerance", "3")
+    answer = run(*words, "--max-deviation", "12", "--out", tmp_path / "out")
+    assert answer.code == 0, answer.err
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["reference"]["reading"]["divide"] == len(report["panels"])
+    assert report["summary"]["max_deviation"] <= 12.0
+    assert any("tried together:" in note for note in report["reference"]["notes"])
+    assert run("verify", tmp_path / "out").code == 0
+
+
+def test_where_no_number_of_panels_holds_the_best_is_delivered_and_said(
+    run: Run, strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fewest_panels, "MOST_FITS", 2)
+    words = ("fit", strip, "--unit", "mm", "--divide", "auto", "--gap-tolerance", "0.01", "--quiet")
+    answer = run(*words, "--max-deviation", "0.5", "--out", tmp_path / "out")
+    assert answer.code == 1
+    assert answer.is_one_sentence(), answer.err
+    assert answer.err.startswith("No number of panels along each strip from ")
+    assert "the best of them" in answer.err
+    assert (tmp_path / "out" / "panels.step").is_file()
+
+
+def test_the_number_of_panels_is_chosen_by_the_largest_deviation(run: Run, strip: Path, tmp_path: Path) -> None:
+    answer = run("fit", strip, "--divide", "auto", "--out", tmp_path / "out")
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert "give --max-deviation, too" in answer.err
+    answer = run("compare", strip, "--unit", "mm", "--divide", "auto", "--out", tmp_path / "out")
+    assert (answer.code, answer.is_one_sentence()) == (2, True)
+    assert "is found by fits: ask 'cadpanel fit' or fewest_panels()" in answer.err

@@ -9,7 +9,6 @@ from cadpanel.delivery import study_files
 from cadpanel.delivery.records.study import read_study
 from cadpanel.delivery.study_plot import MISSING, can_plot, plot_study
 from tests.cli.conftest import Run
-from tests.delivered import strip
 
 PLOTS = {"study.png", "study.svg"} if can_plot() else set[str]()
 
@@ -108,9 +107,3 @@ def test_what_makes_no_study_is_refused(
     assert answer.is_one_sentence(), answer.err
     assert sentence.lower() in answer.err.lower()
     assert not (tmp_path / "out").exists()
-
-
-def test_a_reference_that_is_cut_already_is_not_cut_again() -> None:
-    with pytest.raises(cp.SettingsError, match="is cut already"):
-        cp.study(strip(), gaps=[1.0], divides=[2])
-    assert len(cp.study(strip(), gaps=[1.0]).rows) == 1

@@ -27,6 +27,7 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
+    from cadpanel.api_studies import fewest_panels, study
     from cadpanel.atomic.cone import fit_cone
     from cadpanel.atomic.cylinder import fit_cylinder
     from cadpanel.atomic.plane import fit_plane
@@ -79,12 +80,14 @@ __all__ = [
     "build_solid",
     "compare",
     "deliver",
+    "fewest_panels",
     "fit",
     "fit_cone",
     "fit_cylinder",
     "fit_plane",
     "inspect",
     "read",
+    "study",
     "to_build123d",
     "to_cadquery",
     "verify",
@@ -94,6 +97,7 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
+        "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
         "delivery.verify": ("Verification", "verify"),

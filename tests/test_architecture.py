@@ -25,7 +25,7 @@ HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPy
 
 # What users import from cadpanel itself. A name that leaves this list breaks someone's script.
 PUBLIC = {
-    *("read", "inspect", "fit", "compare", "deliver", "verify"),
+    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify"),
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step"),
     *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch"),
@@ -203,8 +203,10 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.server": "tests/brep/test_read.py",
     "cadpanel.brep.step.products": "tests/brep/step/test_file.py",
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
+    "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
     "cadpanel.cli.tables": "tests/cli/test_fit.py",
+    "cadpanel.delivery.records.study_rows": "tests/cli/test_study.py",
     "cadpanel.features.chain_shapes": "tests/features/test_panel_shapes.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",

@@ -164,7 +164,9 @@ def test_a_fit_is_run_again_from_its_report_with_the_same_numbers(tmp_path: Path
     [
         ReferenceSettings(),
         ReferenceSettings(divide=9, lip=200.0, unit="m", faces=("1-3", "layer=Skin, north"), seam_tolerance=0.5),
+        ReferenceSettings(panel_length=1500.0, seams="conjugate", cut_turn=12.0),
         ReferenceSettings(grid=(20, 10), by="parameter", junctions=True),
+        ReferenceSettings(panel_size=(1500.0, 800.0)),
         ReferenceSettings(stations=(1200.0, 2400.0), spine=Path("spine.step")),
         ReferenceSettings(network=Path("curves.3dm")),
         ReferenceSettings(mesh=Path("roof.obj")),

@@ -26,10 +26,12 @@ from cadpanel.brep.files.face_choice import select_faces
 from cadpanel.brep.files.model import Label, Model
 from cadpanel.brep.isolation.client import work_guarded
 from cadpanel.brep.skin.adjacency import Surface, surfaces_of
+from cadpanel.brep.skin.conjugate import SeamLean, seam_bending, seam_lean
 from cadpanel.brep.skin.cross_sections import sections_of
 from cadpanel.brep.skin.curvature import Curvature, curvature_of
 from cadpanel.brep.skin.face_cleanup import SkinFace, skin_faces
 from cadpanel.brep.skin.lips import SECTIONS, Lip, lips_of
+from cadpanel.brep.skin.strip import find_strip
 from cadpanel.errors import ReferenceFileError
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.settings import ReferenceSettings, file_named
@@ -91,6 +93,7 @@ class SurfaceSurvey:
         area: mm^2.
         lips: where normals turn fast across it; None where that could not be measured, as it is no strip.
         strip: (length, width) along and across the lips, mm; None with them.
+        seams: how far square seams are from where flat panels could meet without a step; None where it is no strip.
     """
 
     name: str
@@ -98,6 +101,7 @@ class SurfaceSurvey:
     area: float
     lips: tuple[Lip, ...] | None
     strip: tuple[float, float] | None
+    seams: SeamLean | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -219,4 +223,13 @@ def _surface(surface: Surface, source: str, tolerance: float) -> SurfaceSurvey:
         area=surface.area,
         lips=lips,
         strip=strip,
+        seams=None if sections is None else _seams(surface, source, tolerance),
     )
+
+
+def _seams(surface: Surface, source: str, tolerance: float) -> SeamLean | None:
+    try:
+        strip = find_strip(surface, source, tolerance)
+    except ReferenceFileError:  # a tube has sections, but no long edges
+        return None
+    return seam_lean(seam_bending(surface, strip), strip.length)

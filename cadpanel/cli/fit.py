@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -16,8 +18,13 @@ from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.texts import AUTO
+
+if TYPE_CHECKING:
+    from cadpanel.reference.model import Reference
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
 
@@ -42,7 +49,8 @@ def fit(
     """
     began = time.perf_counter()
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
-        report, shortfall = _run(reference, how, settings, sheet, folder, shown, time_limit)
+        run = _find if how.divide == AUTO else _run
+        report, shortfall = run(reference, how, settings, sheet, folder, shown, time_limit)
     if not quiet:
         # The tables are for people; numbers for programs are in report.json.
         from cadpanel.cli.tables import print_report
@@ -85,3 +93,45 @@ def _run(
         result = fit_reference(reference, settings, tell, time_limit=time_limit)
     report = fill_delivery(result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
     return report, result.shortfall()
+
+
+def _find(
+    file: Path,
+    how: ReferenceSettings,
+    settings: FitSettings,
+    sheet: SheetSettings,
+    folder: Path,
+    shown: Steps,
+    time_limit: float | None,
+) -> tuple[ReportModel, str | None]:
+    """The same with the fewest panels along each strip that hold everything."""
+    if settings.max_deviation is None:
+        raise SettingsError(f"--divide {AUTO} is chosen by the largest deviation: give --max-deviation, too.")
+    shown.begin(_READ, file.name)
+    start_reader()
+    from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.deliver import fill_delivery
+    from cadpanel.studies.fewest_panels import fewest_panels
+
+    seconds_to_read = 0.0
+
+    def read(count: int) -> Reference:
+        nonlocal seconds_to_read
+        began = time.perf_counter()
+        reference = read_reference(file, replace(how, divide=count))
+        seconds_to_read += time.perf_counter() - began
+        return reference
+
+    with first_interrupt_ends() as interrupted:
+
+        def tell(count: int, step: int, excess: float, rms: float) -> bool:
+            name = f"Fit {count} along each strip"
+            if step == 0:
+                shown.begin(name)
+            else:
+                shown.solving(name, step, excess, rms)
+            return not interrupted.heard()
+
+        found = fewest_panels(read, settings, progress=tell, time_limit=time_limit)
+    report = fill_delivery(found.result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
+    return report, found.shortfall()

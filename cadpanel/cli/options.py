@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, is_dataclass, replace
 from functools import wraps
 from inspect import Parameter, Signature, signature
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
@@ -78,14 +79,41 @@ class Usual:
         return {field.name: value for field, value in found.items() if value != field.default}
 
 
+@dataclass(frozen=True, slots=True)
+class Each:
+    """Beside a tuple of settings: which of their fields are asked for by lists, and by which options.
+
+    The command gets one of the settings for each combination, the first field changing slowest.
+    """
+
+    options: Mapping[str, str]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Asked:
     """One setting as a command asks for it; `usual` where nothing is given, if it is not the settings' default."""
 
     name: str
     option: Option
+    default: Any
     parameter: Parameter
     usual: Mapping[str, object]
+    each: str | None = None
+
+    def values(self, given: Mapping[str, Any]) -> list[dict[str, object]]:
+        """The same for each of the values of a list, and for the one of any other option; without doubles, in order."""
+        if self.each is None or given[self.name] is None:
+            return [self.of(given)]
+        words = [word.strip() for word in given[self.name].split(",")]
+        return list({str(value): {self.name: value} for value in (self._read(word) for word in words)}.values())
+
+    def _read(self, word: str) -> object:
+        if self.option.read is not None:
+            return self.option.read(self.each or flag(self.name), word)
+        try:
+            return float(word) if self.default is None else type(self.default)(word)
+        except ValueError:
+            raise SettingsError(f"{self.each} is a list of numbers like 1,2,5, not '{word}'") from None
 
     def of(self, given: Mapping[str, Any]) -> dict[str, object]:
         """The setting by its name; nothing where what is shown as the default stands, which says it for people."""
@@ -110,23 +138,20 @@ def made_of_settings(command: Callable[..., None]) -> Callable[..., None]:
     """
     hints = get_type_hints(command, include_extras=True)
     shown: list[Parameter] = []
-    made: dict[str, tuple[type[Any], list[_Asked]]] = {}
+    made: dict[str, tuple[type[Any], bool, list[_Asked]]] = {}
     for name, parameter in signature(command).parameters.items():
-        settings, choice = _settings_of(hints[name])
+        settings, several, choice = _settings_of(hints[name])
         if settings is None:
             shown.append(parameter.replace(annotation=hints[name], kind=Parameter.KEYWORD_ONLY))
             continue
-        made[name] = (settings, _asked(settings, choice))
-        shown += [one.parameter for one in made[name][1]]
+        made[name] = (settings, several, _asked(settings, choice))
+        shown += [one.parameter for one in made[name][2]]
 
     @wraps(command)
     def asking(**given: Any) -> None:
         _refuse_contradictions(given)
-        settings = {
-            name: kind(**{key: value for one in asked for key, value in one.of(given).items()})
-            for name, (kind, asked) in made.items()
-        }
-        options = {one.name for _, asked in made.values() for one in asked}
+        settings = {name: _made(kind, several, asked, given) for name, (kind, several, asked) in made.items()}
+        options = {one.name for _, _, asked in made.values() for one in asked}
         command(**settings, **{name: value for name, value in given.items() if name not in options})
 
     asking.__signature__ = Signature(shown)  # type: ignore[attr-defined] # as inspect reads it, and so typer
@@ -134,10 +159,20 @@ def made_of_settings(command: Callable[..., None]) -> Callable[..., None]:
     return asking
 
 
-def _settings_of(hint: Any) -> tuple[type[Any] | None, Iterable[object]]:
-    """The settings that a parameter holds, if any, and what stands beside its type."""
+def _made(kind: type[Any], several: bool, asked: Iterable[_Asked], given: Mapping[str, Any]) -> object:
+    """The settings that the options make, or all of them where lists ask for several."""
+    combinations = product(*(one.values(given) for one in asked))
+    made = tuple(kind(**{key: value for part in parts for key, value in part.items()}) for parts in combinations)
+    return made if several else made[0]
+
+
+def _settings_of(hint: Any) -> tuple[type[Any] | None, bool, Iterable[object]]:
+    """The settings that a parameter holds, if any, whether it holds several, and what stands beside its type."""
     kind, *beside = get_args(hint) if get_origin(hint) is Annotated else (hint,)
-    return (kind if is_dataclass(kind) and isinstance(kind, type) else None), beside
+    several = get_origin(kind) is tuple
+    if several:
+        kind = get_args(kind)[0]
+    return (kind if is_dataclass(kind) and isinstance(kind, type) else None), several, beside
 
 
 def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
@@ -151,6 +186,7 @@ def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
         found[name] = _Asked(
             name=name,
             option=option,
+            default=field.default,
             parameter=_parameter(name, hints[name], told, option),
             usual={name: usual[name]} if name in usual else {},
         )
@@ -160,6 +196,8 @@ def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
             names = list(one.names)
         if isinstance(one, Without):
             names = [name for name in names if name not in one.names]
+        if isinstance(one, Each):
+            found |= {name: _listed(found[name], option) for name, option in one.options.items()}
     return [found[name] for name in names]
 
 
@@ -177,10 +215,20 @@ def _parameter(name: str, kind: Any, default: Any, option: Option) -> Parameter:
     )
 
 
+def _listed(asked: _Asked, option: str) -> _Asked:
+    """The same setting asked for by a list."""
+    what = f"{asked.option.help} Several, with commas between them."
+    metavar = f"{(asked.option.metavar or 'X').partition('|')[0]},..."
+    parameter = asked.parameter.replace(
+        default=None, annotation=Annotated[str | None, typer.Option(option, metavar=metavar, help=what)]
+    )
+    return replace(asked, parameter=parameter, each=option)
+
+
 def _refuse_contradictions(given: Mapping[str, Any]) -> None:
     """Refuse options that cannot stand together, by the names that they have here."""
     for gap in ("gap_tolerance", "joint_tolerance", "step", "shift") if given.get("weights") is not None else ():
         if given.get(gap) is not None:
             raise SettingsError(f"--weights take the place of a tolerance: leave out either --weights or {flag(gap)}.")
-    if "feature" in given and (given["feature"] == AUTO) != (given["max_deviation"] is not None):
-        raise SettingsError(f"--feature {AUTO} and --max-deviation go together: give both or neither.")
+    if given.get("feature") == AUTO and given["max_deviation"] is None:
+        raise SettingsError(f"--feature {AUTO} is chosen by the largest deviation: give --max-deviation, too.")

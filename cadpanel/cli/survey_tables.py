@@ -7,10 +7,18 @@ import math
 from rich.table import Table
 from rich.text import Text
 
+from cadpanel.brep.skin.conjugate import SeamLean
 from cadpanel.brep.survey import FaceSurvey, Survey
 from cadpanel.cli.tables import console, counted
 
 NOTHING = "-"
+# A lean that is worth a sentence, degrees.
+WORTH_TELLING = 2.0
+LEANING = (
+    "Seams lean: by how much a seam would have to lean from square for two flat flanges to meet in it without a step; "
+    "in the mean, and where it is most, mm along the strip. Where square seams are cut, closing them takes panels off "
+    "the drawing; 'fit --divide N --seams conjugate' cuts seams that lean, up to --cut-turn."
+)
 
 
 def print_survey(found: Survey) -> None:
@@ -26,6 +34,8 @@ def print_survey(found: Survey) -> None:
     if found.faces:
         out.print(_faces(found))
         out.print(_surfaces(found))
+        if any(surface.seams is not None and surface.seams.largest >= WORTH_TELLING for surface in found.surfaces):
+            out.print(Text(LEANING), soft_wrap=True)
     if found.curves:
         out.print(_curves(found))
     for note in found.notes:
@@ -65,7 +75,7 @@ def _kind(face: FaceSurvey) -> str:
 
 def _surfaces(found: Survey) -> Table:
     table = Table(title="Surfaces: faces that hang together", title_justify="left", title_style="bold")
-    for heading in ("surface", "faces", "area, m2", "length x width", "lips: turn, width, radius"):
+    for heading in ("surface", "faces", "area, m2", "length x width", "lips: turn, width, radius", "seams lean"):
         table.add_column(heading, overflow="fold")
     for surface in found.surfaces:
         lips = [f"{lip.turn:.1f} degrees over {lip.width:.1f}, radius {lip.radius:.1f}" for lip in surface.lips or ()]
@@ -75,8 +85,15 @@ def _surfaces(found: Survey) -> Table:
             f"{surface.area / 1e6:.4g}",
             NOTHING if surface.strip is None else f"{surface.strip[0]:.1f} x {surface.strip[1]:.1f}",
             "not measured" if surface.lips is None else "\n".join(lips) or "none",
+            NOTHING if surface.seams is None else _lean(surface.seams),
         )
     return table
+
+
+def _lean(seams: SeamLean) -> str:
+    if seams.largest < WORTH_TELLING:
+        return "square is right"
+    return f"{seams.mean:.0f} degrees, {seams.largest:.0f} at {seams.at:.0f}"
 
 
 def _curves(found: Survey) -> Table:

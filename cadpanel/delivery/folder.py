@@ -20,10 +20,14 @@ from cadpanel.errors import CadpanelError, DeliveryError
 
 REPORT = "report.json"
 COMPARISON = "compare.json"
+STUDY, STUDY_TABLE = "study.json", "study.csv"
+STUDY_PLOTS = ("study.png", "study.svg")
 
-MARKS_OF_A_DELIVERY = (REPORT, COMPARISON)
+MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
-OWN_FILES = frozenset({REPORT, COMPARISON, *(name for output in OUTPUTS for name in output.files)})
+OWN_FILES = frozenset(
+    {REPORT, COMPARISON, STUDY, STUDY_TABLE, *STUDY_PLOTS, *(name for output in OUTPUTS for name in output.files)}
+)
 """All that cadpanel writes; whatever else stands in a delivery is someone's work and is never deleted."""
 LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave in a folder that people look into; it goes with the delivery."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.verdict import limits_of
@@ -39,6 +40,8 @@ class FitResult:
         settings: how.
         shapes: the panels, in the order of the reference.
         measures: gaps, deviation and drift of this result.
+        unknowns: (panels, size) the solver's numbers of the shapes, from which a fit of the same panels with the same
+            features may go on.
         baselines: what it is held against, fitted and measured when `local` or `two_stage` is first asked for.
         tolerance_met: whether every gap is within the tolerance, every limit kept and, where features are
             chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
@@ -56,6 +59,7 @@ class FitResult:
     settings: FitSettings
     shapes: tuple[Panel, ...]
     measures: Measures
+    unknowns: Array
     baselines: Baselines
     tolerance_met: bool
     starts: int

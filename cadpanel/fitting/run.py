@@ -36,6 +36,7 @@ def fit(
     progress: Progress | None = None,
     *,
     time_limit: float | None = None,
+    after: FitResult | None = None,
 ) -> FitResult:
     """Fit all panels of a reference.
 
@@ -45,19 +46,23 @@ def fit(
         progress: told of every step of the concurrent fit; False ends it.
         time_limit: seconds after which the concurrent fit ends with the best so far. What comes before it, the fits of
             every panel alone, is always finished.
+        after: a concurrent fit of the same reference with the same features under other tolerances, to go on from.
 
     Raises:
         PanelError: a panel's faces are nothing that the feature could approximate.
-        SettingsError: no starting values are known for the feature, or a time limit is given beside weights.
+        SettingsError: no starting values are known for the feature, a time limit is given beside weights, or there is
+            no going on from the fit that is given.
     """
     began = time.perf_counter()
     watch = _Watch(progress, None if time_limit is None else began + time_limit)
     how = settings or FitSettings()
     if time_limit is not None and how.weights is not None:
         raise SettingsError("a time limit ends the search for what holds tolerances; with weights there is none to end")
+    if after is not None:
+        _require_alike(reference, how, after)
     if not how.automatic:
         features = [how.feature_for(len(panel.edges)) for panel in reference.panels]
-        return _fit(reference, how, features, began, watch)
+        return _fit(reference, how, features, began, watch, after)
     choice = Choice(reference, how)
     result = _fit(reference, how, choice.features(), began, watch)
     # Closing the seams costs deviation: panels that break a limit over it get a feature that follows better, and those
@@ -110,6 +115,7 @@ def _fit(
     features: Sequence[PanelFeature],
     began: float,
     watch: _Watch,
+    after: FitResult | None = None,
 ) -> FitResult:
     """Fit panels that have these features."""
     posed, starts = pose(reference, features, how.blend)
@@ -119,13 +125,15 @@ def _fit(
         return watch.tell(how.method, step, excess, rms)
 
     method = method_for(how)
-    chosen = local if method == LOCAL else method.fit(posed, [local.unknowns], how, tell)
+    begin = [local.unknowns] if after is None else [local.unknowns, after.unknowns]
+    chosen = local if method == LOCAL else method.fit(posed, begin, how, tell)
     measures = measure(panel_shapes(posed, chosen.unknowns), reference)
     return FitResult(
         reference=reference,
         settings=how,
         shapes=measures.shapes,
         measures=measures,
+        unknowns=chosen.unknowns,
         baselines=Baselines(
             reference=reference, settings=how, problem=posed, alone=local.unknowns, measured={how.method: measures}
         ),
@@ -137,6 +145,14 @@ def _fit(
         prices=chosen.prices,
         seconds=time.perf_counter() - began,
     )
+
+
+def _require_alike(reference: Reference, how: FitSettings, after: FitResult) -> None:
+    """Refuse to go on from a fit of other panels or features, or where a method does not go on."""
+    if how.automatic or how.method != "concurrent" or how.weights is not None:
+        raise SettingsError("only a concurrent fit of one feature that holds tolerances goes on from another one")
+    if after.reference is not reference or (after.settings.feature, after.settings.tilt) != (how.feature, how.tilt):
+        raise SettingsError("a fit goes on from one of the same reference with the same feature and tilt")
 
 
 def _offenders(result: FitResult) -> IntArray:

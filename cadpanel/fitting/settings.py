@@ -98,7 +98,8 @@ class FitSettings:
     Attributes:
         feature: name of the shape feature in the catalogue; "auto" for the cheapest one that stays within
             `max_deviation`, panel by panel; or a `Feature` composed by the user.
-        max_deviation: mm that no panel may deviate from its reference where the feature is chosen automatically.
+        max_deviation: mm that no panel may deviate from its reference: by it features are chosen automatically; of a
+            feature that is named it is judged whether it keeps to it.
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
         method: "local", "two_stage" or "concurrent".
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams; None where its parts alone are held.
@@ -127,7 +128,9 @@ class FitSettings:
     max_deviation: float | None = setting(
         None,
         within=Range(what="largest deviation", least=1e-3, unit=" mm", empty=True),
-        option=Option(metavar="MM", help="With --feature auto: how far a panel may lie from the reference anywhere."),
+        option=Option(
+            metavar="MM", help="How far a panel may lie from the reference; chooses with --feature or --divide auto."
+        ),
     )
     tilt: Tilt = setting(
         "free", option=Option(help="May the planes that cut the ends tilt into a mitre, or stand upright?")
@@ -194,10 +197,8 @@ class FitSettings:
         if self.method not in get_args(Method):
             raise SettingsError(f"there is no method '{self.method}'; choose one of: {', '.join(get_args(Method))}")
         check_ranges(self)
-        if (self.feature == AUTO) != (self.max_deviation is not None):
-            raise SettingsError(
-                f"the feature '{AUTO}' and a largest deviation go together: the first is chosen by the second"
-            )
+        if self.feature == AUTO and self.max_deviation is None:
+            raise SettingsError(f"the feature '{AUTO}' is chosen by a largest deviation: give one, too")
         if not isinstance(self.feature, str):
             for limit in LIMITS:
                 limit.check_feature(self.feature, limit.allowed(self))
@@ -222,6 +223,11 @@ class FitSettings:
         parts = {part: usually if value is None else value for part, value, usually in asked}
         held = {} if whole is None else {"gap": whole}
         return held | {part: value for part, value in parts.items() if value < (np.inf if whole is None else whole)}
+
+    @property
+    def widest_gap(self) -> float:
+        """The most that is allowed of gaps, or of one of their parts, mm."""
+        return max(self.gaps.values())
 
     @property
     def automatic(self) -> bool:

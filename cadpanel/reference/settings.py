@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,20 +12,18 @@ from pathlib import Path
 from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.setting import Option, setting
+from cadpanel.reference.texts import AUTO, Auto, choices_of, parse_divide, parse_grid, parse_panel_size, parse_stations
+from cadpanel.setting import Option, Range, check_ranges, setting
 
 By = Literal["length", "parameter"]
+Seams = Literal["square", "level", "conjugate"]
 
 MILLIMETRES = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "yd": 914.4}
 """What the units that may be given for a file without one have in mm."""
 MOST_PANELS = 1_000_000
-WAYS = ("divide", "grid", "stations", "network", "mesh")
+CUT_TURN = 15.0
+WAYS = ("divide", "panel_length", "grid", "panel_size", "stations", "network", "mesh")
 """The ways to cut a surface into panels, of which one may be asked for."""
-
-# One choice of faces and the comma behind it: what holds a comma stands in quotation marks, "" for one of them.
-CHOICE = re.compile(
-    r'\s*(?:(?P<key>\w+\s*=\s*)?"(?P<quoted>(?:[^"]|"")*)"|(?P<bare>(?!\w+\s*=\s*")[^",][^,]*|))\s*(?:,|$)'
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,9 +36,15 @@ class ReferenceSettings:
         faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
             or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for
             anything, and a name that is written so in the file counts before it.
-        divide: cut each strip into so many panels of equal length.
-        lip: with `divide`, keep only a band of this width about the strip's lip, measured along the surface, mm.
+        divide: cut each strip into so many panels of equal length; "auto" for as few as hold what is asked of a fit.
+        panel_length: cut each strip into as few equal panels as are no longer than this along either long edge, mm.
+        seams: with one of these two, "square" cuts the strip square to it; "level" at equal heights, in level planes;
+            "conjugate" where panels can meet, as the surface bends, as near to square as `cut_turn` says.
+        cut_turn: by how much a plane of conjugate seams may be turned from square, degrees.
+        lip: with `divide` or `panel_length`, keep only a band of this width about the strip's lip, measured along the
+            surface, mm.
         grid: cut each surface into so many by so many panels along its two parameters.
+        panel_size: cut each surface into as few equal panels as are no larger than this along its parameters, mm.
         by: are the parts of a grid equal in length or in parameter? In length if None.
         stations: cut by planes at these lengths along the strip or the spine, mm.
         spine: a file with the curve along which the stations are measured; the middle of the strip if None.
@@ -65,12 +68,38 @@ class ReferenceSettings:
             """A name with a comma stands in double quotes: '"Roof, north",layer="Skin, east"'.""",
         ),
     )
-    divide: int | None = setting(
-        None, option=Option(metavar="N", help="Cut each strip, or ring, into so many panels of equal length.")
+    divide: int | Auto | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: parse_divide(text),
+            metavar="N|auto",
+            help="Cut each strip, or ring, into so many panels of equal length; auto: as few as hold what is asked.",
+        ),
+    )
+    panel_length: float | None = setting(
+        None,
+        option=Option(
+            metavar="MM", help="Cut each strip, or ring, into as few equal panels as are no longer than this."
+        ),
+    )
+    seams: Seams = setting(
+        "square",
+        option=Option(
+            help="Cut strips square to them, in level planes, or where panels can meet as the surface bends?"
+        ),
+    )
+    cut_turn: float = setting(
+        CUT_TURN,
+        within=Range(what="turn of a cut", least=0.0, most=45.0, unit=" degrees"),
+        option=Option(metavar="DEG", help="With --seams conjugate: how far a cut may be turned from square."),
     )
     lip: float | None = setting(
         None,
-        option=Option(metavar="MM", help="With --divide: keep only a band of this width about the strip's lip."),
+        option=Option(
+            metavar="MM",
+            help="With --divide or --panel-length: keep only a band of this width about the strip's lip.",
+        ),
     )
     grid: tuple[int, int] | None = setting(
         None,
@@ -79,6 +108,15 @@ class ReferenceSettings:
             read=lambda _, text: parse_grid(text),
             metavar="UxV",
             help="Cut each surface into so many by so many panels.",
+        ),
+    )
+    panel_size: tuple[float, float] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: parse_panel_size(text),
+            metavar="UxV",
+            help="Cut each surface into as few equal panels as are no larger than this, mm.",
         ),
     )
     by: By | None = setting(
@@ -114,6 +152,7 @@ class ReferenceSettings:
         Raises:
             SettingsError: a setting is out of its range, or contradicts another one.
         """
+        check_ranges(self)
         if not _is_positive(self.seam_tolerance):
             raise SettingsError(f"The seam tolerance must be a positive length in mm, not {self.seam_tolerance!r}.")
         if self.unit is not None and str(self.unit) not in MILLIMETRES:
@@ -126,22 +165,46 @@ class ReferenceSettings:
         object.__setattr__(self, "faces", _words(self.faces))
         asked = [way for way in WAYS if getattr(self, way) is not None]
         if len(asked) > 1:
-            raise SettingsError(f"{' and '.join(asked)} are ways to cut the same surface: choose one of them")
-        if self.divide is not None:
+            ways = " and ".join(way.replace("_", " ") for way in asked)
+            raise SettingsError(f"{ways} are ways to cut the same surface: choose one of them")
+        if self.divide is not None and self.divide != AUTO:
             _require_count("number of panels to divide a strip into", self.divide, least=1)
+        self._check_lengthwise()
         object.__setattr__(self, "grid", _grid(self.grid))
+        object.__setattr__(self, "panel_size", _panel_size(self.panel_size))
         object.__setattr__(self, "stations", _stations(self.stations))
-        if self.lip is not None:
-            if not _is_positive(self.lip):
-                raise SettingsError(f"the band about a lip must have a positive width in mm, not {self.lip!r}")
-            if self.divide is None:
-                raise SettingsError("a band about the lip is divided along its length: give the number of panels, too")
-        if self.by is not None and self.grid is None:
-            raise SettingsError("'by' says how a grid is cut: give a grid, too")
+        if self.by is not None and self.grid is None and self.panel_size is None:
+            raise SettingsError("'by' says how a grid is cut: give a grid, too, or the size of its panels")
         if not _is_switch(self.junctions):
             raise SettingsError(f"'junctions' is yes or no, True or False, not {self.junctions!r}")
         if self.spine is not None and self.stations is None:
             raise SettingsError("a spine is what stations are measured along: give stations, too")
+
+    def _check_lengthwise(self) -> None:
+        """Check what goes with a strip that is divided along its length."""
+        lengthwise = self.divide is not None or self.panel_length is not None
+        if self.panel_length is not None and not _is_positive(self.panel_length):
+            raise SettingsError(f"the length of a panel must be a positive number of mm, not {self.panel_length!r}")
+        if self.lip is not None:
+            if not _is_positive(self.lip):
+                raise SettingsError(f"the band about a lip must have a positive width in mm, not {self.lip!r}")
+            if not lengthwise:
+                raise SettingsError(
+                    "a band about the lip is divided along its length: give the number of panels, too, or their length"
+                )
+        if self.seams not in get_args(Seams):
+            raise SettingsError(
+                f"seams are {', '.join(get_args(Seams)[:-1])} or {get_args(Seams)[-1]}, not {self.seams!r}"
+            )
+        if self.seams != "square" and not lengthwise:
+            raise SettingsError(
+                f"{self.seams} seams part a strip that is divided along its length: give the number of panels, too, or "
+                "their length"
+            )
+        if self.cut_turn != CUT_TURN and self.seams != "conjugate":
+            raise SettingsError(
+                "how far a cut may be turned from square counts for conjugate seams: ask for these, too"
+            )
 
     @property
     def way(self) -> str | None:
@@ -175,56 +238,6 @@ def file_named(value: object, what: str) -> Path:
     if name.encode(errors="ignore").decode() != name:
         raise SettingsError(f"the name of the {what}, {name!r}, is not UTF-8: rename the file")
     return Path(name)
-
-
-def choices_of(text: str) -> tuple[str, ...]:
-    """The choices of faces in a text with commas between them: '3, layer="Skin, north"' are 3 and layer=Skin, north.
-
-    Raises:
-        SettingsError: a quotation mark is not closed, or something follows it.
-    """
-    found, start = [], 0
-    while start <= len(text):
-        choice = CHOICE.match(text, start)
-        if choice is None:
-            raise SettingsError(
-                f"faces: the quotation marks in {text!r} do not enclose one choice each; write them like "
-                '\'"Roof, north",layer="Skin, east",3\''
-            )
-        quoted = choice["quoted"]
-        found.append(choice["bare"] if quoted is None else (choice["key"] or "") + quoted.replace('""', '"'))
-        start = choice.end() if choice[0].endswith(",") else len(text) + 1
-    return tuple(found)
-
-
-def parse_grid(text: str) -> tuple[int, int]:
-    """Two numbers of panels from "20x10".
-
-    Raises:
-        SettingsError: the text is not of that form.
-    """
-    found = re.fullmatch(r"\s*(\d{1,7})\s*[xX]\s*(\d{1,7})\s*", text)
-    if found is None:
-        raise SettingsError(f"--grid is two numbers of panels like 20x10, not '{text}'.")
-    return int(found[1]), int(found[2])
-
-
-def parse_stations(text: str) -> tuple[float, ...]:
-    """Lengths from "1200,2400,3600".
-
-    Raises:
-        SettingsError: one of them is no number.
-    """
-    try:
-        return tuple(float(word) for word in text.split(","))
-    except ValueError:
-        raise SettingsError(f"--stations are lengths in mm like 1200,2400,3600, not '{text}'.") from None
-
-
-def choice_named(word: str) -> str:
-    """How a name or layer is written among choices."""
-    found = CHOICE.fullmatch(word)
-    return word if found is not None and found["bare"] == word else '"{}"'.format(word.replace('"', '""'))
 
 
 def _is_switch(value: object) -> bool:
@@ -264,6 +277,15 @@ def _grid(value: object) -> tuple[int, int] | None:
     return int(counts[0]), int(counts[1])
 
 
+def _panel_size(value: object) -> tuple[float, float] | None:
+    if value is None:
+        return None
+    sizes = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else ()
+    if len(sizes) != 2 or not all(map(_is_positive, sizes)):
+        raise SettingsError(f"the size of a panel is two positive lengths in mm, like (1500, 800), not {value!r}")
+    return float(sizes[0]), float(sizes[1])
+
+
 def _stations(value: object) -> tuple[float, ...] | None:
     if value is None:
         return None
@@ -282,9 +304,13 @@ class ReferenceKeywords(TypedDict, total=False):
     seam_tolerance: float
     unit: str | None
     faces: str | Sequence[str] | None
-    divide: int | None
+    divide: int | Auto | None
+    panel_length: float | None
+    seams: Seams
+    cut_turn: float
     lip: float | None
     grid: tuple[int, int] | None
+    panel_size: tuple[float, float] | None
     by: By | None
     stations: Sequence[float] | None
     spine: str | Path | None

@@ -10,7 +10,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
-from cadpanel.features.rulings import Points, Walk
+from cadpanel.features.rulings import PanelFeature, Points, Walk
 from cadpanel.terms.surfaces import CutPlanes, Surfaces, cut_planes_of, surfaces_of
 
 
@@ -46,7 +46,8 @@ class State:
     @cached_property
     def normals(self) -> Points:
         """The skins' unit normals (panels, corners, 3) at the corners, and their derivatives."""
-        return self._points(_corner_normals)
+        pairs = zip(self.layout.groups, self.walks, strict=True)
+        return self._points([_corner_normals(group.feature, walked) for group, walked in pairs])
 
     @cached_property
     def boundary(self) -> Points:

@@ -15,8 +15,10 @@ from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.skin.lips import lips_of
 from cadpanel.brep.survey import survey
 from cadpanel.reference.settings import ReferenceSettings
+from fixtures.lips import Lip as EdgeLip
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_face
+from tests.roof_edges import roof_edge
 
 MM = ReferenceSettings(unit="mm")
 
@@ -71,6 +73,28 @@ def test_a_cone_has_no_lip_at_its_apex(tmp_path):
     assert surveyed(tmp_path, face).surfaces[0].lips == ()
 
 
+def test_flanges_that_twist_say_by_how_much_seams_would_lean_and_where(tmp_path):
+    """The lean of a flange is the angle whose tangent is its twist over its bending along the strip."""
+    (surface,) = surveyed(tmp_path, *roof_edge()).surfaces
+    assert surface.seams is not None
+    assert surface.seams.largest == pytest.approx(33.0, abs=1.5)
+    assert 15.0 < surface.seams.mean < 25.0
+    assert surface.strip is not None
+    assert 0.0 <= surface.seams.at <= surface.strip[0]
+    straight = Lip(length=6000.0, twist=0.0, taper=0.0)
+    (square,) = surveyed(tmp_path, *strip_faces(straight)).surfaces
+    assert square.seams is not None
+    assert square.seams.largest < 0.1
+
+
+def test_what_leans_most_is_found_along_the_strip(tmp_path):
+    late = EdgeLip(panels=6, twist=(0.0, 0.0, 3.0), plan=(6.0, 6.0), rise=(3.0, 3.0))
+    (surface,) = surveyed(tmp_path, *roof_edge(late)).surfaces
+    assert surface.seams is not None
+    assert surface.strip is not None
+    assert surface.seams.at > 0.7 * surface.strip[0]
+
+
 def test_even_bend_has_no_lip_and_two_bends_have_two():
     length = np.linspace(0.0, 1000.0, 401)
     assert lips_of(length, length * 1e-3) == ()
@@ -117,9 +141,11 @@ def test_command_prints_tables_or_json(tmp_path, capsys, monkeypatch):
     said = capsys.readouterr().out
     assert "model.brep: BREP, unit none, read as 1 mm, 3 faces, 1 surface" in said
     assert "doubly curved" in said or "developable" in said
+    assert "Seams lean: by how much a seam would have to lean from square" in said
     assert main(["inspect", str(path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert [face["number"] for face in found["faces"]] == [1, 2, 3]
     assert "read as millimetres" in found["notes"][0]
+    assert set(found["surfaces"][0]["seams"]) == {"mean", "largest", "at"}
     assert main(["inspect", str(tmp_path / "none.step")]) == 2
     assert capsys.readouterr().err.count("\n") == 1

@@ -8,6 +8,7 @@ from OCP.gp import gp_Pln, gp_Pnt
 
 from cadpanel.brep.files.model import Label
 from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.studies import fewest_panels
 from tests.cli.conftest import Run
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip
@@ -70,7 +71,18 @@ def test_bricks_of_a_mesh_meet_part_by_part(run: Run, tmp_path: Path) -> None:
         (("--by", "parameter"), "give a grid, too"),
         (("--by", "length"), "give a grid, too"),
         (("--divide", "2", "--by", "length"), "give a grid, too"),
-        (("--lip", "300"), "give the number of panels, too"),
+        (("--lip", "300"), "give the number of panels, too, or their length"),
+        (("--divide", "3", "--panel-length", "900"), "divide and panel length are ways to cut the same surface"),
+        (("--grid", "3x2", "--panel-size", "900x500"), "grid and panel size are ways to cut the same surface"),
+        (("--divide", "three"), "--divide is a number of panels or auto, not 'three'"),
+        (("--panel-length", "0"), "the length of a panel must be a positive number of mm"),
+        (("--panel-length", "1e-9"), "would be more than 1000000"),
+        (("--panel-size", "900"), "--panel-size is two lengths in mm like 1500x800, not '900'"),
+        (("--panel-size", "900x-5"), "the size of a panel is two positive lengths in mm"),
+        (("--seams", "conjugate"), "give the number of panels, too, or their length"),
+        (("--divide", "3", "--cut-turn", "5"), "how far a cut may be turned from square counts for conjugate seams"),
+        (("--divide", "3", "--seams", "conjugate", "--cut-turn", "50"), "must be between 0 degrees and 45 degrees"),
+        (("--divide", "3", "--seams", "level"), "rises by 0 degrees where it is flattest"),
         (("--unit", "ell"), "there is no unit 'ell'"),
         (("--divide", "2", "--faces", "9"), "has no face '9': it has faces 1 to 3"),
         (("--network", f"{300 * 'a'}.step"), "(File name too long): check its name"),
@@ -127,3 +139,39 @@ def test_name_and_layer_with_a_comma_choose_their_faces(run: Run, tmp_path: Path
     answer = run("inspect", skin, "--faces", "roof, north")
     assert answer.code == 2
     assert """has no face 'north': it has faces 1 to 3; names roof, "roof, north"; layers "Skin, east".""" in answer.err
+
+
+def test_as_few_panels_as_hold_everything_are_found_and_what_was_tried_is_told(
+    run: Run, strip: Path, tmp_path: Path
+) -> None:
+    words = ("fit", strip, "--unit", "mm", "--divide", "auto", "--gap-tolerance", "3")
+    answer = run(*words, "--max-deviation", "12", "--out", tmp_path / "out")
+    assert answer.code == 0, answer.err
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    assert report["reference"]["reading"]["divide"] == len(report["panels"])
+    assert report["summary"]["max_deviation"] <= 12.0
+    assert any("tried together:" in note for note in report["reference"]["notes"])
+    assert run("verify", tmp_path / "out").code == 0
+
+
+def test_where_no_number_of_panels_holds_the_best_is_delivered_and_said(
+    run: Run, strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fewest_panels, "MOST_FITS", 2)
+    words = ("fit", strip, "--unit", "mm", "--divide", "auto", "--gap-tolerance", "0.01", "--quiet")
+    answer = run(*words, "--max-deviation", "0.5", "--out", tmp_path / "out")
+    assert answer.code == 1
+    assert answer.is_one_sentence(), answer.err
+    assert answer.err.startswith("No number of panels along each strip from ")
+    assert "the best of them" in answer.err
+    assert (tmp_path / "out" / "panels.step").is_file()
+
+
+def test_the_number_of_panels_is_chosen_by_the_largest_deviation(run: Run, strip: Path, tmp_path: Path) -> None:
+    answer = run("fit", strip, "--divide", "auto", "--out", tmp_path / "out")
+    assert answer.code == 2
+    assert answer.is_one_sentence(), answer.err
+    assert "give --max-deviation, too" in answer.err
+    answer = run("compare", strip, "--unit", "mm", "--divide", "auto", "--out", tmp_path / "out")
+    assert (answer.code, answer.is_one_sentence()) == (2, True)
+    assert "is found by fits: ask 'cadpanel fit' or fewest_panels()" in answer.err

@@ -136,13 +136,12 @@ def test_the_tilt_holds_the_cuts_of_a_named_feature_and_a_composed_one_says_it_i
         FitSettings(feature=upright, tilt="fixed")
 
 
-def test_the_automatic_feature_and_the_largest_deviation_go_together():
+def test_the_automatic_feature_is_chosen_by_the_largest_deviation_and_a_named_one_is_judged_by_it():
     how = FitSettings(feature="auto", max_deviation=5.0)
     assert (how.automatic, how.feature_name) == (True, "auto")
-    for alone in ({"feature": "auto"}, {"max_deviation": 5.0}, {"feature": "cone", "max_deviation": 5.0}):
-        only: dict[str, Any] = alone
-        with pytest.raises(SettingsError, match="go together"):
-            FitSettings(**only)
+    with pytest.raises(SettingsError, match="is chosen by a largest deviation: give one, too"):
+        FitSettings(feature="auto")
+    assert not FitSettings(feature="cone", max_deviation=5.0).automatic
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf, "5"])

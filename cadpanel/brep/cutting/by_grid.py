@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -28,8 +29,10 @@ AVERAGED = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 OVER_THE_LINE = 1e-5
 
 
-def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str, tolerance: float) -> tuple[CutPanel, ...]:
-    """Cut each face of a surface into a grid: rows follow u, columns v.
+def cut_grid(
+    surface: Surface, counts: Sequence[tuple[int, int]], by: By, source: str, tolerance: float
+) -> tuple[CutPanel, ...]:
+    """Cut each face of a surface into a grid of so many by so many: rows follow u, columns v.
 
     A face that fills its parameter range is cut into exact rectangles of it; a trimmed one is split along the same
     lines, and has panels only where it lies. Panels that meet may lie apart by the tolerance, mm.
@@ -39,28 +42,28 @@ def cut_grid(surface: Surface, counts: tuple[int, int], by: By, source: str, tol
         SettingsError: a face has no room for so many panels.
     """
     panels: list[CutPanel] = []
-    for face in surface.faces:
+    for face, numbers in zip(surface.faces, counts, strict=True):
         name = surface.name if len(surface.faces) == 1 else f"{surface.name}.{face.number}"
-        for axis, count in enumerate(counts):
-            least, why = _least_count(face.patch, axis)
+        for axis, count in enumerate(numbers):
+            least, why = least_count(face.patch, axis)
             if count < least:
                 raise ReferenceFileError(
                     f"Face {face.number} of '{source}' {why}: cut it into {least} or more that way."
                 )
             what = f"parameter {'uv'[axis]} of face {face.number} of '{source}'"
             require_room(lengths_along(face.patch, axis, AVERAGED)[:, -1].tolist(), 0.0, count, what, tolerance)
-        lines = [_lines(face.patch, axis, count, by) for axis, count in enumerate(counts)]
+        lines = [_lines(face.patch, axis, count, by) for axis, count in enumerate(numbers)]
         cells = (
             _whole_cells(face.patch, lines)
             if face.patch.whole
             else _trimmed_cells(face.patch, lines, f"face {face.number} of '{source}'")
         )
         for row, column, piece in cells:
-            panels.append(CutPanel(name=grid_name(name, row, column, counts), faces=(piece,)))
+            panels.append(CutPanel(name=grid_name(name, row, column, numbers), faces=(piece,)))
     return _told_apart(panels)
 
 
-def _least_count(patch: Patch, axis: int) -> tuple[int, str]:
+def least_count(patch: Patch, axis: int) -> tuple[int, str]:
     """How many panels a face must be cut into along a parameter for each to have corners, and why."""
     # A trimmed face need not reach a point to which its surface shrinks.
     poles = [patch.whole and _is_point(patch, 1 - axis, part) for part in (0.0, 1.0)]
@@ -81,13 +84,19 @@ def _is_point(patch: Patch, axis: int, part: float) -> bool:
 
 def _lines(patch: Patch, axis: int, count: int, by: By) -> Array:
     """The (count + 1,) parameters at which the grid's lines lie, the borders included."""
-    parts = np.linspace(0.0, 1.0, count + 1)
-    if by == "length":
-        parts[1:-1] = equal_parts(lengths_along(patch, axis, AVERAGED).mean(axis=0), parts[1:-1])
+    parts = line_parts(patch, axis, count, by)
     low, high = patch.bounds[axis]
     lines = low + parts * (high - low)
     lines[-1] = high
     return np.asarray(lines)
+
+
+def line_parts(patch: Patch, axis: int, count: int, by: By) -> Array:
+    """The same as (count + 1,) parts of the parameter's range, from 0 to 1."""
+    parts = np.linspace(0.0, 1.0, count + 1)
+    if by == "length":
+        parts[1:-1] = equal_parts(lengths_along(patch, axis, AVERAGED).mean(axis=0), parts[1:-1])
+    return parts
 
 
 def _whole_cells(patch: Patch, lines: list[Array]) -> list[tuple[int, int, TopoDS_Face]]:

@@ -1,38 +1,49 @@
-"""A strip cut into a number of panels of equal length along it: the paper's way."""
+"""A strip cut along its length into equal panels: so many, or as few as are no longer than allowed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.TopoDS import TopoDS_Face
 from scipy.spatial import cKDTree
 
-from cadpanel.arrays import Array
 from cadpanel.brep.cutting.cut_panel import CutPanel, along_panels
+from cadpanel.brep.cutting.divisions import division_of
+from cadpanel.brep.cutting.fewest import fewest
 from cadpanel.brep.cutting.lip_band import lip_band
-from cadpanel.brep.cutting.smallest_panel import require_room
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.skin.adjacency import Surface, surfaces_of
 from cadpanel.brep.skin.belt import find_belt
 from cadpanel.brep.skin.face_cleanup import SkinFace, measure
 from cadpanel.brep.skin.iso_strip import find_lanes
 from cadpanel.brep.skin.ring import find_ring
-from cadpanel.brep.skin.split_by_planes import cut_by_planes
-from cadpanel.brep.skin.strip import find_strip
 from cadpanel.errors import ReferenceFileError
-from cadpanel.geometry.polyline import arc_length
-from cadpanel.geometry.vectors import norm
+from cadpanel.reference.settings import Seams
 
-# Points of a long edge by which its length is measured.
-EDGE_POINTS = 257
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Lengths:
+    """How a strip is divided.
+
+    Attributes:
+        count: number of panels; None where their length tells it.
+        longest: length that no panel may exceed along either long edge, mm.
+        seams: which planes part them.
+        most_turn: by how much one of conjugate seams may be turned from square, radians.
+    """
+
+    count: int | None
+    longest: float | None
+    seams: Seams
+    most_turn: float
 
 
 def cut_lip(
-    surface: Surface, count: int, width: float, source: str, tolerance: float
+    surface: Surface, how: Lengths, width: float, source: str, tolerance: float
 ) -> tuple[tuple[CutPanel, ...], tuple[str, ...]]:
-    """Cut the band of a width about a strip's lip, mm, where its long edges have equal parts.
+    """Cut the band of a width about a strip's lip, mm, along its length.
 
     Returns:
         The panels, and notes.
@@ -43,7 +54,7 @@ def cut_lip(
     halves = _halves(surface, source, tolerance)
     if halves is None:
         band, notes = lip_band(surface, width, source, tolerance)
-        return cut_lengths(band, count, source, tolerance), notes
+        return cut_lengths(band, how, source, tolerance), notes
     bands = [lip_band(half, width, source, tolerance) for half in halves]
     faces = [face for band, _ in bands for face in band.faces]
     found, _ = surfaces_of(faces, source, tolerance)
@@ -52,7 +63,7 @@ def cut_lip(
             f"The band about the lip of the surface of {surface.numbers} of '{source}' does not close to a ring as the "
             "surface does: choose faces that do not go all the way round."
         )
-    panels = cut_lengths(replace(found[0], name=surface.name), count, source, tolerance)
+    panels = cut_lengths(replace(found[0], name=surface.name), how, source, tolerance)
     return panels, tuple(note for _, notes in bands for note in notes)
 
 
@@ -85,16 +96,12 @@ def _pieces(pieces: Sequence[TopoDS_Face], surface: Surface, source: str) -> lis
     return [piece for piece in found if piece is not None]
 
 
-def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> tuple[CutPanel, ...]:
-    """Cut a strip where the mean length of its two long edges has equal parts.
-
-    Faces side by side that share their parameter along the strip are cut along parameter lines, without any boolean,
-    as are faces that follow each other round a ring, no wider than it is long, in rows with common joints. All others,
-    strips and rings, are cut by planes through the two long edges, square to the strip.
+def cut_lengths(surface: Surface, how: Lengths, source: str, tolerance: float) -> tuple[CutPanel, ...]:
+    """Cut a strip where the mean length of its two long edges has equal parts; with level seams, its height.
 
     Args:
         surface: what to cut.
-        count: number of panels.
+        how: into what.
         source: the reference's name.
         tolerance: how far faces that meet may lie apart, mm.
 
@@ -102,43 +109,11 @@ def cut_lengths(surface: Surface, count: int, source: str, tolerance: float) -> 
         ReferenceFileError: the surface is no strip, or cannot be cut.
         SettingsError: it has no room for so many panels.
     """
-    what = f"the surface of {surface.numbers} of '{source}'"
-    lanes = find_lanes(surface)
-    parts = np.linspace(0.0, 1.0, count + 1)
-    if lanes is None or not lanes.outer:
-        ring = find_ring(surface)
-        if ring is not None and ring.length >= ring.width:
-            _require_parts(count, what)
-            require_room([ring.longest], 0.0, count, what, tolerance)
-            return along_panels(surface.name, ring.cut(count, tolerance))
-        if ring is not None or lanes is not None:
-            raise ReferenceFileError(
-                f"T{what[1:]} is closed round its length, and a panel cannot go round: cut it both ways, with a grid."
-            )
-        belt = find_belt(surface, source, tolerance)
-        if belt is not None:
-            _require_parts(count, what)
-            require_room([belt.length], 0.0, count, what, tolerance)
-            return along_panels(surface.name, belt.cut(surface, count, source))
-    if lanes is not None:
-        _require_room(lanes.edges(np.linspace(0.0, 1.0, EDGE_POINTS)), count, what, tolerance)
-        parts[1:-1] = lanes.at_lengths(parts[1:-1])
-        return along_panels(surface.name, lanes.cut(parts))
-    strip = find_strip(surface, source, tolerance)
-    _require_room(np.array(strip.edges), count, what, tolerance)
-    if count == 1:
-        return along_panels(surface.name, [[face.patch.face for face in surface.faces]])
-    return along_panels(surface.name, cut_by_planes(surface, strip.planes(parts[1:-1]), source))
-
-
-def _require_parts(count: int, what: str) -> None:
-    if count == 1:
-        raise ReferenceFileError(
-            f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into 2 or more."
+    division = division_of(surface, how.seams, how.most_turn, source, tolerance)
+    count = how.count
+    if count is None:
+        assert how.longest is not None
+        count = fewest(
+            division.longest_panel, division.longest, how.longest, f"the surface of {surface.numbers} of '{source}'"
         )
-
-
-def _require_room(edges: Array, count: int, what: str, tolerance: float) -> None:
-    """Refuse more panels than there is room for between two long edges, (2, q, 3) points."""
-    lengths = [float(arc_length(edge)[-1]) for edge in edges]
-    require_room(lengths, float(norm(edges[1] - edges[0]).min()), count, what, tolerance)
+    return along_panels(surface.name, division.cut(count))

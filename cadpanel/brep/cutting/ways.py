@@ -11,17 +11,19 @@ import numpy as np
 from cadpanel.brep.curves.drawn_curve import Curve, CurveFile, curves_beside, own_curves, sampled
 from cadpanel.brep.curves.projection import land_curves
 from cadpanel.brep.cutting.by_grid import cut_grid
-from cadpanel.brep.cutting.by_length import cut_lengths, cut_lip
+from cadpanel.brep.cutting.by_length import Lengths, cut_lengths, cut_lip
 from cadpanel.brep.cutting.by_mesh import LAY_OVER, Mesh, load_mesh, require_all_panels, require_near
 from cadpanel.brep.cutting.by_network import WORTH_A_NOTE, cut_network
 from cadpanel.brep.cutting.by_stations import cut_stations, spine_of
 from cadpanel.brep.cutting.cut_panel import CutPanel
+from cadpanel.brep.cutting.grid_counts import counts_within
 from cadpanel.brep.cutting.open_closed_faces import opened
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.strip import CUT_OTHERWISE
 from cadpanel.errors import ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.texts import AUTO
 
 DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
 """What to do about a curve that does not cut."""
@@ -29,6 +31,8 @@ DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or ta
 
 REMEDIES = {
     "divide": f"{CUT_OTHERWISE}, or divide it into another number of panels",
+    "panel_length": f"{CUT_OTHERWISE}, or allow panels of another length",
+    "panel_size": "allow panels of another size, or give a grid",
     "grid": "give a grid of other numbers, 2 or more each way, 3 or more round a point, its lines through every hole",
     "stations": f"{CUT_OTHERWISE}, or give other stations",
 }
@@ -106,25 +110,34 @@ def cut_surfaces(
 
 
 def _lengths(skin: _Skin) -> Cut:
-    count, lip = skin.settings.divide or 1, skin.settings.lip
-    source, tolerance = skin.model.source, skin.settings.seam_tolerance
+    how, source = skin.settings, skin.model.source
+    if how.divide == AUTO:
+        raise SettingsError(f"how many panels '{source}' needs is found by fits: ask 'cadpanel fit' or fewest_panels()")
+    wanted = Lengths(
+        count=how.divide, longest=how.panel_length, seams=how.seams, most_turn=float(np.radians(how.cut_turn))
+    )
     panels: list[CutPanel] = []
     notes: list[str] = []
     for surface in skin.surfaces:
-        if lip is None:
-            panels += cut_lengths(surface, count, source, tolerance)
+        if how.lip is None:
+            panels += cut_lengths(surface, wanted, source, how.seam_tolerance)
         else:
-            of_band, found = cut_lip(surface, count, lip, source, tolerance)
+            of_band, found = cut_lip(surface, wanted, how.lip, source, how.seam_tolerance)
             panels += of_band
             notes += found
     return Cut(panels=tuple(panels), notes=tuple(notes))
 
 
 def _grid(skin: _Skin) -> Cut:
-    counts, by = skin.settings.grid or (1, 1), skin.settings.by or "length"
+    how, by = skin.settings, skin.settings.by or "length"
     source, tolerance = skin.model.source, skin.settings.seam_tolerance
-    cut = [cut_grid(surface, counts, by, source, tolerance) for surface in skin.surfaces]
-    return Cut(panels=tuple(panel for panels in cut for panel in panels))
+    panels: list[CutPanel] = []
+    for surface in skin.surfaces:
+        counts = [how.grid or (1, 1)] * len(surface.faces)
+        if how.panel_size is not None:
+            counts = counts_within(surface, how.panel_size, by, source)
+        panels += cut_grid(surface, counts, by, source, tolerance)
+    return Cut(panels=tuple(panels))
 
 
 def _stations(skin: _Skin) -> Cut:
@@ -184,7 +197,9 @@ def _cut_by_curves(
 
 WAYS: dict[str, Callable[[_Skin], Cut]] = {
     "divide": _lengths,
+    "panel_length": _lengths,
     "grid": _grid,
+    "panel_size": _grid,
     "stations": _stations,
     "network": _network,
     "mesh": _mesh,

@@ -9,7 +9,7 @@ from glob import escape
 
 from cadpanel.brep.files.model import Model, ModelFace, UnreadableFace
 from cadpanel.errors import ReferenceFileError
-from cadpanel.reference.settings import choice_named
+from cadpanel.reference.texts import choice_named
 
 # No file has a thousand million faces, and Python refuses to read numbers that are much longer.
 NUMBERS = re.compile(r"0*(\d{1,9})(?:\s*-\s*0*(\d{1,9}))?")

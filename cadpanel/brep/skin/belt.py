@@ -49,6 +49,12 @@ class Belt:
         """Mean length of the two edges, mm."""
         return float(self.reach[-1])
 
+    def longest_part(self, count: int) -> float:
+        """How long the longest of so many equal parts is along either edge, mm."""
+        places = np.linspace(0.0, self.length, count + 1)
+        along = (np.interp(places, self.reach, arc_length(edge)) for edge in self.edges)
+        return max(float(np.diff(reach).max()) for reach in along)
+
     def cuts(self, count: int, start: float) -> Cuts:
         """The planes at equal parts of the length, from a place on: 0 is the first plane, 1.5 between the next two.
 

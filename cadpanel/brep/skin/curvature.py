@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -12,7 +13,7 @@ from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import Patch
 from cadpanel.brep.faces.inside_test import InsideTest
 from cadpanel.brep.skin.face_cleanup import SkinFace
-from cadpanel.geometry.vectors import cross, norm
+from cadpanel.geometry.vectors import cross, dot, norm
 
 Class = Literal["flat", "developable", "doubly curved"]
 
@@ -66,31 +67,86 @@ def _off_plane(points: Array) -> float:
 
 def _principal(patch: Patch) -> tuple[Array, Array, Array]:
     """Gaussian curvature (m,), largest principal curvature (m,) and area (m,) of the cells whose middles lie inside."""
-    parts = (np.arange(GRID) + 0.5) / GRID
-    parameters = patch.at(0, np.repeat(parts, GRID), np.tile(parts, GRID))
-    if not patch.whole:
-        parameters = parameters[InsideTest(patch.face, patch.bounds).inside(parameters)]
-    su, sv, suu, svv, suv = _derivatives(patch, parameters)
-    normals = cross(su, sv)
-    sizes = norm(normals)
-    good = sizes > DEGENERATE * max(float(sizes.max(initial=0.0)), DEGENERATE)
-    su, sv, suu, svv, suv, sizes = (values[good] for values in (su, sv, suu, svv, suv, sizes))
-    normals = normals[good] / sizes[:, None]
-    e, f, g = (np.sum(a * b, axis=1) for a, b in ((su, su), (su, sv), (sv, sv)))
-    long, mixed, short = (np.sum(second * normals, axis=1) for second in (suu, suv, svv))
+    bent = bending_of(patch, GRID)
+    (e, f, g), (long, mixed, short) = bent.first, bent.second
     determinant = e * g - f * f
     gaussian = (long * short - mixed * mixed) / determinant
     mean = 0.5 * (e * short - 2.0 * f * mixed + g * long) / determinant
     root = np.sqrt(np.maximum(mean * mean - gaussian, 0.0))
-    return gaussian, np.abs(mean) + root, sizes
+    return gaussian, np.abs(mean) + root, bent.areas
 
 
-def _derivatives(patch: Patch, parameters: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """First and second derivatives Su, Sv, Suu, Svv, Suv, each (m, 3)."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bending:
+    """How a face bends, at m points spread evenly over its parameters.
+
+    Attributes:
+        points: (m, 3) mm.
+        normals: (m, 3) of unit length, to the side of its surface's own.
+        along: (2, m, 3) the derivatives by both parameters.
+        first, second: (3, m) coefficients of the two fundamental forms.
+        areas: (m,) of the cells around the points, in units that are the same for all of them.
+    """
+
+    points: Array
+    normals: Array
+    along: Array
+    first: Array
+    second: Array
+    areas: Array
+
+    def turn(self, ways: Array) -> Array:
+        """(m, 3) by how much the normal turns on (m, 3) ways along the tangent planes, per length, 1/mm."""
+        (e, f, g), (long, mixed, short) = self.first, self.second
+        determinant = e * g - f * f
+        by_u, by_v = (dot(ways, along) for along in self.along)
+        u, v = (g * by_u - f * by_v) / determinant, (e * by_v - f * by_u) / determinant
+        on_u, on_v = long * u + mixed * v, mixed * u + short * v
+        p, q = (g * on_u - f * on_v) / determinant, (e * on_v - f * on_u) / determinant
+        turned: Array = -(p[:, None] * self.along[0] + q[:, None] * self.along[1])
+        return turned
+
+
+def joined(parts: Sequence[Bending]) -> Bending:
+    """The points of several faces as one."""
+    return Bending(
+        points=np.concatenate([one.points for one in parts]),
+        normals=np.concatenate([one.normals for one in parts]),
+        along=np.concatenate([one.along for one in parts], axis=1),
+        first=np.concatenate([one.first for one in parts], axis=1),
+        second=np.concatenate([one.second for one in parts], axis=1),
+        areas=np.concatenate([one.areas for one in parts]),
+    )
+
+
+def bending_of(patch: Patch, count: int) -> Bending:
+    """Measure a face in the middles of count x count cells of its parameter range, where they lie inside."""
+    parts = (np.arange(count) + 0.5) / count
+    parameters = patch.at(0, np.repeat(parts, count), np.tile(parts, count))
+    if not patch.whole:
+        parameters = parameters[InsideTest(patch.face, patch.bounds).inside(parameters)]
+    points, su, sv, suu, svv, suv = _derivatives(patch, parameters)
+    normals = cross(su, sv)
+    sizes = norm(normals)
+    good = sizes > DEGENERATE * max(float(sizes.max(initial=0.0)), DEGENERATE)
+    points, su, sv, suu, svv, suv, sizes = (values[good] for values in (points, su, sv, suu, svv, suv, sizes))
+    normals = normals[good] / sizes[:, None]
+    return Bending(
+        points=points,
+        normals=normals,
+        along=np.array([su, sv]),
+        first=np.array([dot(a, b) for a, b in ((su, su), (su, sv), (sv, sv))]),
+        second=np.array([dot(twice, normals) for twice in (suu, suv, svv)]),
+        areas=sizes,
+    )
+
+
+def _derivatives(patch: Patch, parameters: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Points, first and second derivatives Su, Sv, Suu, Svv, Suv, each (m, 3)."""
     point, vectors = gp_Pnt(), tuple(gp_Vec() for _ in range(5))
     numbers = []
     for u, v in parameters.tolist():
         patch.surface.D2(u, v, point, *vectors)
-        numbers.append([vector.Coord() for vector in vectors])
-    values = np.array(numbers, dtype=np.float64).reshape(-1, 5, 3)
-    return values[:, 0], values[:, 1], values[:, 2], values[:, 3], values[:, 4]
+        numbers.append([point.Coord(), *(vector.Coord() for vector in vectors)])
+    values = np.array(numbers, dtype=np.float64).reshape(-1, 6, 3)
+    return values[:, 0], values[:, 1], values[:, 2], values[:, 3], values[:, 4], values[:, 5]

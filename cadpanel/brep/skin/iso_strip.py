@@ -11,9 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.TopoDS import TopoDS_Face
+from scipy.interpolate import PchipInterpolator
 
 from cadpanel.arrays import Array
-from cadpanel.brep.faces.face_patch import Patch, equal_parts, lengths_along, rectangle
+from cadpanel.brep.faces.face_patch import INTERVALS, Patch, equal_parts, lengths_along, rectangle
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.strip_direction import turning_angles, way_along
 from cadpanel.geometry.order import goes_backwards
@@ -95,6 +96,16 @@ class Lanes:
                 ranges = (along, (other_low, other_high)) if lane.axis == 0 else ((other_low, other_high), along)
                 group.append(rectangle(lane.patch, *ranges))
         return groups
+
+    def spans(self, parts: Array) -> Array:
+        """(2 lanes, n) lengths along both borders of every lane between (n + 1,) rising parts of the way, mm."""
+        even = np.linspace(0.0, 1.0, INTERVALS + 1)
+        spans = []
+        for lane in self.lanes:
+            places = lane.own(parts)
+            for reach in lengths_along(lane.patch, lane.axis, ENDS):
+                spans.append(np.abs(np.diff(PchipInterpolator(even, reach)(places))))
+        return np.array(spans)
 
     def turned(self) -> Lanes:
         """The same lanes walked the other way."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -11,6 +11,7 @@ from OCP.TopoDS import TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from cadpanel.arrays import Array
 from cadpanel.brep.faces.face_patch import equal_parts, lengths_along
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.iso_strip import ENDS, Lane, Lanes, match_behind, match_beside, neighbours_of
@@ -57,6 +58,20 @@ class Ring:
             tolerance: a cut as close as this to where two faces meet is made there, mm.
         """
         groups: list[list[TopoDS_Face]] = [[] for _ in range(count)]
+        for column, parts, panels in self._parts(count, tolerance):
+            for panel, pieces in zip(panels, column.cut(parts), strict=True):
+                groups[panel] += pieces
+        return groups
+
+    def longest_panel(self, count: int, tolerance: float) -> float:
+        """How long the longest of so many panels is along the longest border of its faces, mm."""
+        lengths = np.zeros(count)
+        for column, parts, panels in self._parts(count, tolerance):
+            np.add.at(lengths, np.array(panels), column.spans(parts).max(axis=0))
+        return float(lengths.max())
+
+    def _parts(self, count: int, tolerance: float) -> Iterator[tuple[Lanes, Array, list[int]]]:
+        """Every column, where it is cut, as parts of the way along it, and to which panel each piece goes."""
         step = self.length / count
         start = 0.0
         for column in self.columns:
@@ -66,10 +81,8 @@ class Ring:
             inside = cuts[(cuts > start + tolerance) & (cuts < stop - tolerance)]
             borders = np.concatenate([[start], inside, [stop]])
             parts = np.concatenate([[0.0], equal_parts(reach, (inside - start) / reach[-1]), [1.0]])
-            for places, pieces in zip(pairwise(borders), column.cut(parts), strict=True):
-                groups[min(int(np.mean(places) / step), count - 1)] += pieces
+            yield column, parts, [min(int(np.mean(places) / step), count - 1) for places in pairwise(borders)]
             start = stop
-        return groups
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

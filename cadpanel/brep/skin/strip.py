@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array
 from cadpanel.brep.skin.adjacency import Surface
@@ -13,7 +14,7 @@ from cadpanel.brep.skin.strip_direction import turning_angles, way_along
 from cadpanel.errors import OutlineError, ReferenceFileError
 from cadpanel.geometry.order import goes_backwards
 from cadpanel.geometry.polyline import arc_length, interpolate
-from cadpanel.geometry.vectors import norm, unit
+from cadpanel.geometry.vectors import cross, dot, norm, unit
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import Side, find_outline
 
@@ -25,6 +26,7 @@ SIDES = 4
 NO_CHORD = 0.02
 # A plane reaches beyond the middle of its chord by this part of the girth: no point of a section lies farther than 0.5.
 REACH = 0.6
+LEAST_SLANT = 0.1
 # Places on the middle line by which points of the surface are told how far along they are.
 MIDDLE_POINTS = 1025
 # Half the step by which directions along the long edges are measured, as a part of the length.
@@ -51,22 +53,59 @@ class Strip:
             found.append(interpolate([lengths], edge, [parts * lengths[-1]]))
         return np.array(found)
 
-    def planes(self, parts: Array) -> Cuts:
-        """Planes through both long edges at (k,) parts of their lengths, square to the strip's direction there."""
+    def frames(self, parts: Array) -> Array:
+        """(k, 3, 3) rows at (k,) parts of the length: along the strip, along the chord, and square to both.
+
+        The way along is square to the chord between the long edges; where they all but meet the chord is zero.
+        """
         points = self.points(parts)
         before, after = self.points(np.maximum(parts - STEP, 0.0)), self.points(np.minimum(parts + STEP, 1.0))
         along = unit(unit(after - before).sum(axis=0))
         chords = points[1] - points[0]
         across = np.where(norm(chords)[:, None] > NO_CHORD * self.girth, unit(chords), 0.0)
-        normals = unit(along - np.sum(along * across, axis=1, keepdims=True) * across)
+        ways = unit(along - np.sum(along * across, axis=1, keepdims=True) * across)
+        return np.stack([ways, across, cross(ways, across)], axis=1)
+
+    def planes(self, parts: Array, normals: Array | None = None) -> Cuts:
+        """Planes midway between the long edges at (k,) parts of their lengths, with their (k, 3) unit normals.
+
+        Without normals they pass through both edges, square to the strip's direction there.
+        """
         fine = np.linspace(0.0, 1.0, MIDDLE_POINTS)
+        square = self.frames(parts)[:, 0]
+        normals = square if normals is None else normals
+        # A plane at a slant meets the same strip farther from its middle.
+        slant = np.maximum(np.abs(dot(square, normals)), LEAST_SLANT)
         return Cuts(
-            origins=points.mean(axis=0),
+            origins=self.points(parts).mean(axis=0),
             normals=normals,
-            reach=np.full(len(parts), REACH * self.girth),
+            reach=REACH * self.girth / slant,
             line=self.points(fine).mean(axis=0),
             places=np.interp(fine, np.concatenate([[0.0], parts, [1.0]]), np.arange(len(parts) + 2)),
         )
+
+    def lengths_between(self, cuts: Cuts) -> Array:
+        """(2, k + 1) lengths along the two edges between their ends and the planes, in order, mm.
+
+        An edge counts as cut where it crosses a plane nearest to the place opposite the plane's origin.
+        """
+        middle = self.points(np.linspace(0.0, 1.0, MIDDLE_POINTS)).mean(axis=0)
+        opposite = np.asarray(cKDTree(middle).query(cuts.origins)[1]) / (MIDDLE_POINTS - 1)
+        lengths = []
+        for edge in self.edges:
+            along = arc_length(edge)
+            heights = np.einsum("qkd,kd->kq", edge[:, None] - cuts.origins, cuts.normals)
+            crossed = (heights[:, 1:] > 0.0) != (heights[:, :-1] > 0.0)
+            steps = heights[:, 1:] - heights[:, :-1]
+            share = np.clip(-heights[:, :-1] / np.where(crossed, steps, 1.0), 0.0, 1.0)
+            places = along[:-1] + share * np.diff(along)
+            off = np.where(crossed, np.abs(places - opposite[:, None] * along[-1]), np.inf)
+            nearest = np.take_along_axis(places, off.argmin(axis=1)[:, None], axis=1)[:, 0]
+            # A plane beyond an end leaves nothing of the edge.
+            beyond = np.where(heights[:, 0] > 0.0, 0.0, along[-1])
+            at = np.where(crossed.any(axis=1), nearest, beyond)
+            lengths.append(np.diff(np.concatenate([[0.0], at, [along[-1]]])))
+        return np.array(lengths)
 
 
 def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:

@@ -44,8 +44,13 @@ class Concurrent(Method):
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
-        """Fit all panels from their local fits, and from as many restarts as are asked for."""
+        """Fit all panels from their local fits, and from as many restarts as are asked for.
+
+        With a second start, the end of a fit under other tolerances, it goes on from there instead.
+        """
         local = starts[0]
+        if len(starts) > 1:
+            return _hold_seams(problem, starts[1], local, settings, progress, gathered=True)
         return best_of_starts(
             lambda start: _hold_seams(problem, start, local, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
@@ -59,15 +64,22 @@ class Concurrent(Method):
 
 
 def _hold_seams(
-    problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
+    problem: Problem,
+    start: Array,
+    local: Array,
+    settings: FitSettings,
+    progress: Progress | None,
+    *,
+    gathered: bool = False,
 ) -> Fitted:
+    """Hold every seam from a start, whose corners lie together already or are gathered first."""
     limits = problem.named_limits(settings, MARGIN)
-    gathered, iterations = _gather(problem, settings, [term for _, term in limits], start)
+    begin, iterations = (start, 0) if gathered else _gather(problem, settings, [term for _, term in limits], start)
     allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
-    gaps = gap_terms(problem, allowed, problem.state(gathered))
+    gaps = gap_terms(problem, allowed, problem.state(begin))
     named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in gaps), *limits]
     model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
-    found = held_within(problem, model, gathered, local=local, tell=progress)
+    found = held_within(problem, model, begin, local=local, tell=progress)
     iterations += found.iterations
     yielding = [term for name, term in limits if name in _YIELDING]
     if found.excess > _FIRM and found.end.best.firm > _FIRM and yielding and found.stopped is not Stop.TOLD:
@@ -76,7 +88,7 @@ def _hold_seams(
         for term in yielding:
             term.hold.gives_way = True
         model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
-        found = held_within(problem, model, gathered, local=local, tell=progress)
+        found = held_within(problem, model, begin, local=local, tell=progress)
         iterations += found.iterations
     stopped = found.stopped
     # Measure whole seams, tighten those that are too wide, go on.
@@ -109,7 +121,7 @@ def _excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[st
 
 def _gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
     """A few steps towards closed seams, and how many."""
-    gaps = seam_terms(problem, max(settings.gaps.values()))
+    gaps = seam_terms(problem, settings.widest_gap)
     for gap in gaps:
         gap.hold.weight[:] = _FIRST_GAP
     weighed = [limit for limit in limits if limit.hold.weight.any()]

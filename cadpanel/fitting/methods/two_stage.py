@@ -29,7 +29,7 @@ class TwoStage(Method):
         """Fit the panels' places, from local fits."""
         local = starts[0]
         weights = settings.weights or Weights()
-        gaps = problem.corner_gaps(max(settings.gaps.values()))
+        gaps = problem.corner_gaps(settings.widest_gap)
         for gap in gaps:
             gap.hold.weight[:] = weights.gap / weights.deviation
         moving = problem.placement_unknowns()

@@ -24,7 +24,8 @@ from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError, SettingsError
-from cadpanel.reference.settings import ReferenceSettings, choice_named, choices_of
+from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.texts import choice_named, choices_of
 from tests.cuts import EQUAL, assert_covers, cut, middle, model_of, panels_of, reference_of
 from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import Lip, kernel_face, ring

@@ -93,8 +93,7 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
     gaps = np.array(seam.corner_gaps)
     try:
         first, second = (
-            edge_corners(np.array(panels[panel].corners), edge)
-            for panel, edge in zip(seam.panels, seam.edges, strict=True)
+            edge_corners(_fitted(panels[panel]), edge) for panel, edge in zip(seam.panels, seam.edges, strict=True)
         )
     except ValueError as error:
         yield f"{name}: {error}."
@@ -111,6 +110,11 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
         yield f"{name}: the corner gaps in the report are off by {off:.3g} mm from its panels' corners."
     if seam.max_corner_gap != gaps.max():
         yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
+
+
+def _fitted(panel: PanelModel) -> Array:
+    """The panel's corners as the fit had them, in rows."""
+    return np.array(panel.corners if panel.fitted is None else panel.fitted.corners)
 
 
 def _summary_faults(report: ReportModel) -> Iterator[str]:

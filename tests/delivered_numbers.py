@@ -34,7 +34,7 @@ def delivered(fixture: str) -> Tree:
     """What report.json would say of the panels, seams and the whole of a fixture under the default settings."""
     result = fit(read_reference(ROOT / "fixtures" / f"{fixture}.step"))
     built = build_panels(result.shapes, SheetSettings(), result.reference.seams)
-    seams = seam_records(result.reference, result.measures, built.recut)
+    seams = seam_records(result.reference, result.measures, built.joints)
     records = {
         "panels": [panel.model_dump(mode="json") for panel in panel_records(result, built)],
         "seams": [seam.model_dump(mode="json") for seam in seams],

@@ -80,7 +80,7 @@ def fill_delivery(
         compared_at = time.perf_counter()
         built = build_panels(result.shapes, sheet, result.reference.seams, tell)
         panels = panel_records(result, built)
-        seams = seam_records(result.reference, result.measures, built.recut)
+        seams = seam_records(result.reference, result.measures, built.joints)
         built_at = time.perf_counter()
         delivery = Delivery(panels=built.panels, title=Path(result.reference.source).stem, sheet=sheet)
         _write(folder, delivery, tell, helper)

@@ -11,7 +11,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.errors import PanelError
 from cadpanel.geometry.edge_planes import SeamEdges
 from cadpanel.geometry.joint_widths import widest_joint
-from cadpanel.geometry.joints import Jointed, cut_to_seams
+from cadpanel.geometry.joints import Joint, Jointed, cut_to_seams
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.geometry.volume import sheet_volume
@@ -54,11 +54,11 @@ class Built:
 
     Attributes:
         panels: one sheet a panel.
-        recut: of each seam, how far its edges were moved, at most, to lie in one plane, mm.
+        joints: of each seam, where it stands.
     """
 
     panels: tuple[PanelSheet, ...]
-    recut: tuple[float, ...]
+    joints: tuple[Joint, ...]
 
 
 def build_panels(
@@ -82,7 +82,7 @@ def build_panels(
         if narrow is None:
             raise
         raise PanelError(narrow.panel, narrow.reason) from None
-    return Built(panels=panels, recut=jointed.recut)
+    return Built(panels=panels, joints=jointed.joints)
 
 
 def seam_edges(shapes: Sequence[Panel], seams: Sequence[Seam]) -> list[SeamEdges]:

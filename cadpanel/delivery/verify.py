@@ -119,6 +119,7 @@ def prove(
             panels=seam.panels,
             edges=seam.edges,
             gap=seam.max_seam_gap + sum(moved[name] for name in seam.panels),
+            across=None if seam.plane is None else np.array(seam.plane.normal),
             clear=None if seam.clear is None else (seam.clear.least, seam.clear.largest),
         )
         for seam in seams

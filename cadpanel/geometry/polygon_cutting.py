@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from cadpanel.geometry.vectors import cross, dot, unit
 
 NEARLY_STRAIGHT = 0.05
 """Radians by which an outline must turn at a corner for its two walls to be of their own."""
+AHEAD = 1e-9
+"""How far a wall of several edges may stand beyond that of one of them, mm."""
+MOST_ROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +33,10 @@ class _Line:
     out: Array
     reach: float
     lean: float
+
+    def moved(self, distance: float) -> _Line:
+        """The line that many mm farther out."""
+        return replace(self, reach=self.reach + distance)
 
 
 def cut_polygon(shape: Outlined, planes: Mapping[str, CutPlane], depth: float) -> tuple[Array, Array]:
@@ -49,18 +56,15 @@ def cut_polygon(shape: Outlined, planes: Mapping[str, CutPlane], depth: float) -
         for i in range(count)
     ]
     group = _groups(outs, shape.normal)
-    walls = [_common([i for i in range(count) if group[i] == g], lines, square, corners, depth) for g in group]
-    moved, posts = corners.copy(), np.tile(shape.normal, (count, 1))
-    for i in range(count):
-        before, after = walls[i - 1], walls[i]
-        if before is square[i - 1] and after is square[i]:
-            continue
-        if group[i - 1] == group[i]:
-            moved[i] += (after.reach - after.out @ corners[i]) * after.out
-            posts[i] += after.lean * after.out
-        else:
-            moved[i], lean = _meeting(before, after)
-            posts[i] += lean
+    walls = [_common([i for i in range(count) if group[i] == g], lines, square, corners) for g in group]
+    for _ in range(MOST_ROUNDS):
+        moved, posts = _corners(corners, shape.normal, walls, square, group)
+        ahead = _ahead(moved, posts, lines, (0.0, depth))
+        if ahead.max() <= AHEAD:
+            break
+        worst = {g: max(float(ahead[i]) for i in range(count) if group[i] == g) for g in group}
+        pulled = {id(wall): wall.moved(-worst[g]) for g, wall in zip(group, walls, strict=True) if worst[g] > AHEAD}
+        walls = [pulled.get(id(wall), wall) for wall in walls]
     for height in (0.0, depth):
         now = moved + height * posts
         _check_edges(shape.name, np.roll(now, -1, axis=0) - now, unit(spans))
@@ -86,26 +90,44 @@ def _groups(outs: Array, normal: Array) -> list[int]:
     return group
 
 
-def _common(members: list[int], lines: list[_Line], square: list[_Line], corners: Array, depth: float) -> _Line:
-    """One wall for edges that go on straight: it keeps behind the walls of all of them, on both faces."""
+def _common(members: list[int], lines: list[_Line], square: list[_Line], corners: Array) -> _Line:
+    """One wall for edges that go on straight, the mean of theirs; where it stands is found by `_ahead`."""
     given = [lines[i] for i in members if lines[i] is not square[i]]
     if len(members) == 1 or not given:
         return lines[members[0]]
     out = unit(np.sum([lines[i].out for i in members], axis=0))
-    lean = float(np.mean([line.lean for line in given]))
-    reaches = [
-        float(out @ _on(line, corners[end % len(corners)], height)) - height * lean
-        for i in members
-        for line in (lines[i],)
-        for end in (i, i + 1)
-        for height in (0.0, depth)
+    ends = [corners[end % len(corners)] for i in members for end in (i, i + 1)]
+    return _Line(out, max(float(out @ end) for end in ends), float(np.mean([line.lean for line in given])))
+
+
+def _corners(
+    corners: Array, normal: Array, walls: list[_Line], square: list[_Line], group: list[int]
+) -> tuple[Array, Array]:
+    """Where the walls meet (n, 3), and by how much that moves for one mm of height (n, 3)."""
+    moved, posts = corners.copy(), np.tile(normal, (len(corners), 1))
+    for i in range(len(corners)):
+        before, after = walls[i - 1], walls[i]
+        if before is square[i - 1] and after is square[i]:
+            continue
+        if group[i - 1] == group[i]:
+            moved[i] += (after.reach - after.out @ corners[i]) * after.out
+            posts[i] += after.lean * after.out
+        else:
+            moved[i], lean = _meeting(before, after)
+            posts[i] += lean
+    return moved, posts
+
+
+def _ahead(moved: Array, posts: Array, lines: list[_Line], heights: tuple[float, float]) -> Array:
+    """(n,) how far the two ends of each edge stand beyond its own line, at most, on either face of the sheet."""
+    out = np.array([line.out for line in lines])
+    reach, lean = (np.array([getattr(line, name) for line in lines]) for name in ("reach", "lean"))
+    ends = [
+        dot(np.roll(moved + height * posts, -end, axis=0), out) - reach - height * lean
+        for height in heights
+        for end in (0, 1)
     ]
-    return _Line(out, min(reaches), lean)
-
-
-def _on(line: _Line, corner: Array, height: float) -> Array:
-    """The point of a line at a height that is nearest to a corner."""
-    return np.asarray(corner + (line.reach + height * line.lean - line.out @ corner) * line.out)
+    return np.asarray(np.max(ends, axis=0))
 
 
 def _meeting(one: _Line, other: _Line) -> tuple[Array, Array]:

@@ -64,7 +64,7 @@ def clearances(
             failures.append(f"{seam.called}: a wall of the sheets cannot be found.")
             found.append(None)
             continue
-        clear = _between(first, second)
+        clear = _between(first, second, seam.across)
         found.append(clear)
         failures += _faults(seam, clear, joint)
     return found
@@ -85,7 +85,7 @@ def _faults(seam: ExpectedSeam, clear: Clear, joint: float) -> list[str]:
 
 
 def _wall(solid: ShapeFacts, corners: Array, edge: str) -> _Wall | None:
-    """The face of a sheet at one edge: of the planes that all pieces of the edge lie on, the one across the skin."""
+    """The face of a sheet at one edge: of the planes on which all of the edge lies, the one that leaves the skin."""
     chosen = edge_pieces(solid, corners, edge)
     if chosen is None:
         return None
@@ -93,19 +93,24 @@ def _wall(solid: ShapeFacts, corners: Array, edge: str) -> _Wall | None:
     flat = [face for face in shared if solid.surfaces[face, 6] == 0.0]
     if not flat:
         return None
-    points = corners.reshape(-1, 3)
-    across = [float(np.abs((points - solid.surfaces[face, :3]) @ solid.surfaces[face, 3:6]).max()) for face in flat]
-    face = flat[int(np.argmax(across))]
-    surface = solid.surfaces[face]
-    outline = solid.pieces.take((solid.piece_faces == face).any(axis=1))
-    return _Wall(surface[:3], surface[8] * surface[3:6], outline)
+    bounds = [(solid.piece_faces == face).any(axis=1) for face in flat]
+    leaves = [_farthest(solid.piece_ends[own].reshape(-1, 3), corners.reshape(-1, 3)) for own in bounds]
+    place = int(np.argmax(leaves))
+    surface = solid.surfaces[flat[place]]
+    return _Wall(surface[:3], surface[8] * surface[3:6], solid.pieces.take(bounds[place]))
 
 
-def _between(one: _Wall, other: _Wall) -> Clear:
+def _farthest(points: Array, corners: Array) -> float:
+    """How far the farthest point is from the corner that is nearest to it."""
+    return float(np.linalg.norm(points[:, None] - corners, axis=-1).min(axis=1).max())
+
+
+def _between(one: _Wall, other: _Wall, across: Array | None) -> Clear:
     widths = [_beyond(one, other.outline), _beyond(other, one.outline)]
-    across = unit(one.normal - other.normal)[None]
-    between = other.outline.reach(across)[0].min() - one.outline.reach(across)[1].max()
-    least = max(float(between), min(least for least, _ in widths))
+    halfway = unit(one.normal - other.normal)
+    ways = np.stack([halfway, halfway if across is None else unit(across)])
+    between = other.outline.reach(ways)[0].min(axis=1) - one.outline.reach(ways)[1].max(axis=1)
+    least = max(float(between.max()), min(least for least, _ in widths))
     largest = max(largest for _, largest in widths)
     return Clear(round(least, DIGITS) + 0.0, round(largest, DIGITS) + 0.0)
 

@@ -56,12 +56,15 @@ class ExpectedSeam:
         panels: names of the two panels.
         edges: which edge of each, for example "end 1" or "side 0".
         gap: the gap along the whole seam that the report states, mm; None to measure only.
+        across: (3,) a way across the joint, from the first panel to the second: that between them lies a layer of space
+            square to it is then seen in the files; None where only the walls tell.
         clear: the least and the largest clear width of the joint that the report states, mm; None to measure only.
     """
 
     panels: tuple[str, str]
     edges: tuple[str, str]
     gap: float | None = None
+    across: Array | None = None
     clear: tuple[float, float] | None = None
 
     @property

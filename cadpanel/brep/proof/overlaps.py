@@ -8,12 +8,13 @@ kernel is asked only for what is left.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.shape_facts import ShapeFacts
+from cadpanel.geometry.boxes import meeting
 
 TOUCH = 1e-7
 """How far one sheet may reach through the plane that parts it from another, mm: the kernel's own tolerance."""
@@ -24,7 +25,7 @@ def unparted(solids: Sequence[ShapeFacts]) -> list[tuple[int, int]]:
     boxes = np.array([_box(facts) for facts in solids]).reshape(-1, 2, 3)
     return [
         (i, j)
-        for i, j in _meeting(boxes[:, 0], boxes[:, 1])
+        for i, j in meeting(boxes[:, 0], boxes[:, 1], TOUCH)
         if not (_parts(solids[i], solids[j]) or _parts(solids[j], solids[i]))
     ]
 
@@ -35,17 +36,6 @@ def _box(facts: ShapeFacts) -> tuple[Array, Array]:
         return np.full(3, -np.inf), np.full(3, np.inf)
     least, greatest = facts.pieces.reach(np.eye(3))
     return least.min(axis=1), greatest.max(axis=1)
-
-
-def _meeting(least: Array, greatest: Array) -> Iterator[tuple[int, int]]:
-    """Pairs of boxes (n, 3) that meet, each once: swept along x, in the order in which they begin."""
-    order = np.argsort(least[:, 0], kind="stable")
-    starts = least[order, 0]
-    for place, i in enumerate(order.tolist()):
-        last = int(np.searchsorted(starts, greatest[i, 0] - TOUCH))
-        others = order[place + 1 : max(last, place + 1)]
-        meets = (least[others, 1:] < greatest[i, 1:] - TOUCH) & (greatest[others, 1:] > least[i, 1:] + TOUCH)
-        yield from ((min(i, j), max(i, j)) for j in others[meets.all(axis=1)].tolist())
 
 
 def _parts(one: ShapeFacts, other: ShapeFacts) -> bool:

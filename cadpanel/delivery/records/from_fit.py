@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cadpanel.delivery.records.from_shape import fitted_model, patch_models, rows
+from cadpanel.delivery.records.from_shape import cut_model, fitted_model, patch_models, rows
 from cadpanel.delivery.records.report import (
     BaselinesModel,
     PanelModel,
@@ -23,6 +23,7 @@ from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.result import FitResult
+from cadpanel.geometry.joints import Joint
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -123,15 +124,15 @@ def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
     )
 
 
-def seam_records(reference: Reference, measures: Measures, recut: Sequence[float]) -> tuple[SeamModel, ...]:
+def seam_records(reference: Reference, measures: Measures, joints: Sequence[Joint]) -> tuple[SeamModel, ...]:
     """Every seam; the panel that comes first in the file is named first, as its walk orders the corners.
 
     Args:
         reference: with the seams.
         measures: of their gaps and kinks.
-        recut: of each, as `Built` has it.
+        joints: of each, as `Built` has them.
     """
-    return tuple(_seam(reference, seam, measures, index, recut[index]) for index, seam in enumerate(reference.seams))
+    return tuple(_seam(reference, seam, measures, index, joints[index]) for index, seam in enumerate(reference.seams))
 
 
 def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
@@ -144,7 +145,7 @@ def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
     return reference.panels[first].name, reference.panels[second].name
 
 
-def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, recut: float) -> SeamModel:
+def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint) -> SeamModel:
     order = np.argsort(seam.panels, kind="stable")
     first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
     gaps = measures.corner_gaps[index]
@@ -156,7 +157,8 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, recu
         max_corner_gap=float(gaps.max()),
         max_seam_gap=float(measures.seam_gap[index]),
         max_kink=float(np.degrees(measures.kink[index])),
-        recut=recut,
+        plane=cut_model(joint.plane.point, (1.0 if order[0] == 0 else -1.0) * joint.plane.normal),
+        recut=joint.recut,
     )
 
 

@@ -46,11 +46,13 @@ def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
 
 def fitted_model(shape: Panel) -> FittedModel:
     """A panel as it was fitted: its corners, and the planes that cut its ends."""
-    cuts = zip(*shape.cuts(), strict=True)
-    return FittedModel(
-        corners=rows(shape.corners()),
-        cuts=tuple(CutModel(normal=vector(normal), offset=float(point @ normal)) for point, normal in cuts),
-    )
+    cuts = tuple(cut_model(point, normal) for point, normal in zip(*shape.cuts(), strict=True))
+    return FittedModel(corners=rows(shape.corners()), cuts=cuts)
+
+
+def cut_model(point: Array, normal: Array) -> CutModel:
+    """The plane through a point (3,) with a unit normal (3,)."""
+    return CutModel(normal=vector(normal), offset=float(point @ normal))
 
 
 def rows(corners: Array) -> tuple[tuple[Vector, ...], ...]:

@@ -160,8 +160,10 @@ class SeamModel(Record):
         max_corner_gap: the largest of them, mm.
         max_seam_gap: symmetric Hausdorff distance between the two edges, mm.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
-        recut: how far a corner of either edge was from the plane in the middle of the joint, at most, mm: so far the
-            edges were moved to lie in one plane; None in reports from before they were.
+        plane: in the middle of the joint, its normal out of the first panel; None in reports from before there were
+            joints.
+        recut: how far a corner of either edge was from that plane, at most, mm: so far the edges were moved to lie in
+            it; the same.
         clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same.
     """
 
@@ -172,6 +174,7 @@ class SeamModel(Record):
     max_corner_gap: NonNegative
     max_seam_gap: NonNegative
     max_kink: NonNegative
+    plane: CutModel | None = None
     recut: NonNegative | None = None
     clear: ClearModel | None = None
 

@@ -22,6 +22,8 @@ SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
 SAME_ANGLE = 1e-6
 """Degrees by which a patch's sweep may differ from what its corners, to the last digit of a double, enclose."""
+SAME_VOLUME = 1e-6
+"""Volume in mm3 by which what two solids share may differ between two machines."""
 ON_PATCH = 1e-5
 """Distance in mm of a corner from the patches that meet there."""
 
@@ -211,3 +213,9 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         was, now = getattr(stated, key), getattr(found, key)
         if not abs(was - now) <= limit:
             yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."
+    for key in ("least", "largest"):
+        was, now = (None if one.clear is None else getattr(one.clear, key) for one in (stated, found))
+        if (was is None) != (now is None) or (was is not None and not abs(was - now) <= SAME_LENGTH):
+            yield f"The certificate in the report says clear.{key} = {was}, the files show {now}."
+    if stated.overlap is not None and found.overlap is not None and not found.overlap <= stated.overlap + SAME_VOLUME:
+        yield f"The certificate in the report says overlap = {stated.overlap:.6g}, the files show {found.overlap:.6g}."

@@ -92,7 +92,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         corners=rows(built.shape.corners()),
         fitted=fitted_model(built.fitted),
         patches=patch_models(built.shape),
-        taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
+        taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
         moved=built.moved,
         notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
     )
@@ -100,7 +100,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
 
 def _blend_note(reference: PanelReference, built: PanelSheet, blends: Sequence[Blend]) -> tuple[str, ...]:
     """What to say of a panel whose bend is not where it was told to be."""
-    missed = missed_blend(reference, built.shape, blends)
+    missed = missed_blend(reference, built.fitted, blends)
     if missed is None:
         return ()
     # The same on both ends is said once.

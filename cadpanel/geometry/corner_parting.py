@@ -1,7 +1,7 @@
 """Panels that meet without a seam, in a corner or along a part of an edge, held apart where their sheets would meet.
 
 Four walls that come together in a corner do not pass through one line, unless the panels are tangent to one cone
-there: two of the four panels, opposite each other, would share a sliver inside the sheet. One of them is set back.
+there: two of the four panels, opposite each other, would share a sliver inside the sheet. Both are set back a little.
 Millimetres.
 """
 
@@ -61,18 +61,35 @@ def part_at_corners(
     """
     extents = [_extent(shape, depth) for shape in cut]
     for pair in _unjoined(cut, extents, set(map(frozenset, seams))):
-        one, other = (extents[i] for i in pair)
-        if _beside(one, other):
-            continue
-        planes = [(i, edge, plane) for i in pair for edge, plane in _all_walls(shapes[i], walls[i]).items()]
-        behind = np.array([_behind(plane, extents[pair[pair[0] == i]]) for i, _, plane in planes])
-        if behind.min() <= APART or behind.min() > abs(depth):
-            continue
-        chosen = int(np.flatnonzero(behind <= PREFERRED * behind.min())[0])
-        panel, edge, plane = planes[chosen]
-        walls[panel][edge] = plane.moved(-float(behind[chosen]))
-        cut[panel] = shapes[panel].cut_back(walls[panel], depth)
-        extents[panel] = _extent(cut[panel], depth)
+        # Half of the way by a wall of the one, the rest by one of the other: no joint opens more than it must.
+        for order, share in ((pair, 0.5), (pair[::-1], 1.0)):
+            moved = _set_back(order, share, shapes, walls, extents, depth)
+            if moved is None:
+                break
+            cut[moved] = shapes[moved].cut_back(walls[moved], depth)
+            extents[moved] = _extent(cut[moved], depth)
+
+
+def _set_back(
+    pair: tuple[int, int],
+    share: float,
+    shapes: Sequence[Panel],
+    walls: Sequence[Walls],
+    extents: Sequence[_Extent],
+    depth: float,
+) -> int | None:
+    """Move a wall of either panel by a share of how far the other is behind it; the panel, None if they are apart."""
+    one, other = pair
+    if _beside(extents[one], extents[other]):
+        return None
+    planes = [(i, edge, plane) for i in pair for edge, plane in _all_walls(shapes[i], walls[i]).items()]
+    behind = np.array([_behind(plane, extents[other if i == one else one]) for i, _, plane in planes])
+    if behind.min() <= APART or behind.min() > abs(depth):
+        return None
+    chosen = int(np.flatnonzero(behind <= PREFERRED * behind.min())[0])
+    panel, edge, plane = planes[chosen]
+    walls[panel][edge] = plane.moved(-share * float(behind[chosen]))
+    return panel
 
 
 def _extent(shape: Panel, depth: float) -> _Extent:

@@ -1,13 +1,12 @@
 """Panels without a seam between them are set back where their sheets would meet, and only there."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 import pytest
 
 from cadpanel.geometry.corner_parting import Walls, part_at_corners
 from cadpanel.geometry.joints import cut_to_seams, seam_planes, walls_of
-from cadpanel.geometry.shape import PolygonShape
 from tests.joined import SIDE, polygon, quadrilaterals, seams
 
 
@@ -33,12 +32,9 @@ def test_opposite_panels_in_a_corner_are_parted_by_a_wall_and_were_not_before(de
     before = [panel.cut_back(wall, depth) for panel, wall in zip(panels, walls, strict=True)]
     opposite = [(0, 3), (1, 2)]
     assert min(between(before[i], before[j], depth) for i, j in opposite) < -1e-4
-    after = cut_to_seams(panels, own, 0.0, depth).shapes
+    after: Any = cut_to_seams(panels, own, 0.0, depth).shapes
     assert min(between(after[i], after[j], depth) for i, j in opposite) > -1e-8
-    set_back = [
-        np.abs(one.outline - other.outline).max()
-        for one, other in zip(before, cast(list[PolygonShape], after), strict=True)
-    ]
+    set_back = [np.abs(one.corners() - other.corners()).max() for one, other in zip(before, after, strict=True)]
     assert 0.0 < max(set_back) < 0.5 * abs(depth)
 
 

@@ -13,7 +13,7 @@ from tests.joined import hexagons, quadrilaterals, seams, turned
 CLOSE = 1e-8  # mm
 GRIDS = {"quadrilaterals": quadrilaterals(), "skew": quadrilaterals(skew=0.3), "hexagons": hexagons()}
 # How far panels may be set back where four meet in a corner, in mm.
-SET_BACK = {"quadrilaterals": 0.3, "skew": 0.5, "hexagons": CLOSE}
+SET_BACK = {"quadrilaterals": 0.4, "skew": 0.7, "hexagons": CLOSE}
 every_grid = pytest.mark.parametrize("name", GRIDS)
 every_sheet = pytest.mark.parametrize("depth", [-3.0, -20.0, 20.0])
 

@@ -144,7 +144,7 @@ def _overlap(panels_step: str | os.PathLike[str], solids: Sequence[ShapeFacts], 
     for (first, second), volume in zip(pairs, shared, strict=True):
         if not volume <= OVERLAP_LIMIT:
             failures.append(
-                f"Panels '{solids[first].name}' and '{solids[second].name}': share {volume:.3g} mm3, and no "
+                f"Panels '{solids[first].name}' and '{solids[second].name}' share {volume:.3g} mm3, and no "
                 "seam between them is known: take a thinner sheet, a wider --seam-tolerance, or, where corners lie on "
                 "sides, --junctions."
             )

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import combinations
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -15,8 +13,6 @@ from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
-import cadpanel as cp
-from cadpanel.arrays import Array
 from cadpanel.brep.building.sheet import volume_of
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.step.file import read_step_shapes
@@ -28,46 +24,18 @@ from cadpanel.delivery.records.report import ClearModel, ReportModel, read_repor
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError, SettingsError
-from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
-from tests.grids import dome, write_grid, write_honeycomb
+from tests.grids import dome, write_grid
+from tests.joined_fits import FITS, fitted
 from tests.known_panels import ring as known_ring
 from tests.known_panels import sampled
-from tests.reference_shapes import Surface
 from tests.shapes import folded_panel, moved
 
-FIXTURES = Path(__file__).parents[2] / "fixtures"
 SHARED = 1e-6  # mm3 that the kernel may find in common of two solids that touch
 MEASURED = 1e-4  # mm by which the kernel's distance may be off
 WITHIN = 0.3  # mm that a joint may be wider than asked where panels fit exactly
-
-
-def barrel() -> Surface:
-    """A vault whose rows are straight: cylinders fit exactly."""
-
-    def surface(u: Array, v: Array) -> Array:
-        turn = 0.8 * (np.asarray(v) - 0.5)
-        return np.stack([1500.0 * np.asarray(u), 5000.0 * np.sin(turn), 5000.0 * np.cos(turn)], axis=-1)
-
-    return surface
-
-
-@cache
-def fitted(name: str) -> FitResult:
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "reference.step"
-        if name == "lip":
-            return cp.fit(cp.read(FIXTURES / "kai_tak_nw.step"))
-        if name == "hexagons":
-            write_honeycomb(path, dome(20_000.0, 30_000.0, 0.01))
-            return fit(read_reference(path), FitSettings(feature="planar-polygon"))
-        if name == "cylinders":
-            write_grid(path, barrel())
-            return fit(read_reference(path), FitSettings(feature="cylinder"))
-        write_grid(path, dome(20_000.0, 30_000.0))
-        return fit(read_reference(path), FitSettings(feature="planar-quadrilateral", gap_tolerance=0.01))
 
 
 def solids_of(folder: Path) -> dict[str, TopoDS_Shape]:
@@ -95,7 +63,7 @@ CASES: list[tuple[float, float, SkinSide]] = [(0.0, 3.0, "outer"), (0.0, 20.0, "
 CASES += [(20.0, 3.0, "inner")]
 
 
-@pytest.mark.parametrize("name", ["lip", "quadrilaterals", "cylinders", "hexagons"])
+@pytest.mark.parametrize("name", FITS)
 @pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
 def test_joints_are_as_wide_as_asked_and_no_two_solids_share_volume(
     tmp_path: Path, name: str, joint: float, thickness: float, skin_side: SkinSide

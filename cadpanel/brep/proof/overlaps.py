@@ -22,17 +22,18 @@ TOUCH = 1e-7
 
 def unparted(solids: Sequence[ShapeFacts]) -> list[tuple[int, int]]:
     """Pairs of sheets, by their places, whose boxes meet and which none of their flat faces parts."""
-    boxes = np.array([_box(facts) for facts in solids]).reshape(-1, 2, 3)
+    there = [place for place, facts in enumerate(solids) if facts.solids and len(facts.pieces)]
+    boxes = np.array([_box(solids[place]) for place in there]).reshape(-1, 2, 3)
     return [
         (i, j)
-        for i, j in meeting(boxes[:, 0], boxes[:, 1], TOUCH)
+        for i, j in sorted((there[one], there[other]) for one, other in meeting(boxes[:, 0], boxes[:, 1], TOUCH))
         if not (_parts(solids[i], solids[j]) or _parts(solids[j], solids[i]))
     ]
 
 
 def _box(facts: ShapeFacts) -> tuple[Array, Array]:
     """The least and greatest coordinates (3,); without end where an edge is of a kind that cannot be measured."""
-    if len(facts.other_edges) or not len(facts.pieces):
+    if len(facts.other_edges):
         return np.full(3, -np.inf), np.full(3, np.inf)
     least, greatest = facts.pieces.reach(np.eye(3))
     return least.min(axis=1), greatest.max(axis=1)

@@ -132,7 +132,7 @@ def _share_cut_off(shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, d
     if not FARTHEST_OUT < share < 1.0:
         raise PanelError(
             shape.name,
-            f"its neighbour at side {side} lies too far from it for a wall between the two: fit with a smaller gap "
-            "tolerance, or leave the seam out.",
+            f"its neighbour at side {side} lies too far away for a wall between the two: hold a smaller gap tolerance, "
+            "or read the reference with a smaller --seam-tolerance, so that they do not meet.",
         )
     return share

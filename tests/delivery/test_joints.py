@@ -28,7 +28,7 @@ from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.grids import dome, write_grid
-from tests.joined_fits import FITS, fitted
+from tests.joined_fits import FITS, bricks, cones, fitted
 from tests.known_panels import ring as known_ring
 from tests.known_panels import sampled
 from tests.shapes import folded_panel, moved
@@ -83,6 +83,28 @@ def test_joints_are_as_wide_as_asked_and_no_two_solids_share_volume(
         apart = BRepExtrema_DistShapeShape(*(solids[panel] for panel in seam.panels)).Value()
         assert joint - MEASURED <= apart <= joint + WITHIN
     assert shared(solids) <= SHARED
+
+
+@pytest.mark.parametrize("junctions", [True, False])
+@pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
+def test_bricks_share_no_volume_whether_they_are_joined_all_round_or_row_by_row(
+    tmp_path: Path, junctions: bool, joint: float, thickness: float, skin_side: SkinSide
+) -> None:
+    sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side)
+    report = deliver(bricks(junctions=junctions), tmp_path / "out", sheet)
+    assert len(report.seams) == (11 if junctions else 5)
+    assert report.certificate.clear is not None
+    assert report.certificate.clear.least == pytest.approx(joint, abs=1e-6)
+    assert shared(solids_of(tmp_path / "out")) <= SHARED
+
+
+def test_between_cones_a_joint_is_as_wide_as_asked_where_it_is_narrowest(tmp_path: Path) -> None:
+    report = deliver(cones(), tmp_path / "out", SheetSettings(joint=10.0))
+    for seam in report.seams:
+        assert seam.clear is not None
+        assert seam.clear.least == pytest.approx(10.0, abs=1e-6)
+        # The cone widens by a part in thirteen at most over a panel, and the joint with it.
+        assert seam.clear.largest <= (10.0 + 1e-6 if seam.edges[0].startswith("end") else 10.8)
 
 
 def test_the_skins_are_cut_back_as_the_solids_are_and_gaps_stay_those_of_the_fit(tmp_path: Path) -> None:

@@ -57,5 +57,5 @@ def test_what_is_not_named_stays():
 def test_a_plane_that_misses_a_round_side_is_refused():
     shape = folded_panel(chain="c", radius=900.0, widths=(), turns=())
     plane = leaning(shape, "side 1", -600.0, 0.0)
-    with pytest.raises(PanelError, match="its neighbour at side 1 lies too far from it"):
+    with pytest.raises(PanelError, match="its neighbour at side 1 lies too far away"):
         shape.cut_back({"side 1": plane}, -3.0)

@@ -17,8 +17,11 @@ from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import FitKeywords, FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.unroll import FlatPattern, neutral_offset
+from cadpanel.geometry.unroll import unroll as unroll_shape
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
+from cadpanel.setting import require
 
 if TYPE_CHECKING:
     import build123d
@@ -198,6 +201,29 @@ def deliver(
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
     return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
+
+
+def unroll(
+    shape: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer", k_factor: float = 0.5
+) -> FlatPattern:
+    """One panel as a flat sheet seen from outside: outline, tangent lines and rulings, exactly.
+
+    Args:
+        shape: one of a result's shapes.
+        thickness: of the sheet, mm.
+        skin_side: "outer" or "inner".
+        k_factor: distance of the surface that keeps its lengths from the inner face of the bends, as a share of the
+            thickness; flat panels have the middle of the sheet with 0.5.
+
+    Raises:
+        PanelError: the panel bends both ways, and the K-factor is not 0.5.
+        SettingsError: the thickness, side or K-factor is none.
+    """
+    from cadpanel.delivery.settings import SheetSettings
+
+    sheet = SheetSettings(thickness=thickness, skin_side=skin_side)
+    require("K-factor", k_factor, least=0.0, most=1.0)
+    return unroll_shape(shape, neutral_offset(shape, sheet.thickness, sheet.skin_side, k_factor))
 
 
 def to_cadquery(

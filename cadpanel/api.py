@@ -6,6 +6,7 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from cadpanel.delivery.settings import Schema
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
+    from cadpanel.delivery.shop_settings import ShopKeywords
     from cadpanel.studies.table1 import Progress as CompareProgress
 
 
@@ -175,8 +177,9 @@ def deliver(
     schema: Schema = "AP242",
     overwrite: bool = False,
     progress: DeliveryProgress | None = None,
+    **shop: Unpack[ShopKeywords],
 ) -> ReportModel:
-    """Write a delivery folder whole or not at all: panels.step, skins.step, and report.json with the proof.
+    """Write a delivery folder whole or not at all: STEP, flat patterns, the schedule, and report.json with the proof.
 
     Args:
         result: the fitted panels.
@@ -186,21 +189,24 @@ def deliver(
         schema: of the STEP files, "AP242" or "AP214".
         overwrite: replace an existing delivery.
         progress: told the step ("compare", "build", "write", "verify"), how much of it is done, and of how much.
+        shop: the fields of `ShopSettings`: which outputs of which panels, and how drawings and schedule are made.
 
     Returns:
         What report.json holds.
 
     Raises:
-        SettingsError: the thickness, side or schema is none.
+        SettingsError: the thickness, side or schema is none, or there is no such output or panel.
         PanelError: a panel cannot be built.
         DeliveryError: the folder is refused or cannot be written.
         ProofError: what was written is not what was promised; nothing is left.
     """
     from cadpanel.delivery.deliver import deliver as deliver_result
     from cadpanel.delivery.settings import SheetSettings
+    from cadpanel.delivery.shop_settings import ShopSettings
 
     sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
+    asked = ShopSettings(**cast("dict[str, Any]", shop))
+    return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)
 
 
 def unroll(
@@ -273,43 +279,52 @@ def to_build123d(
 
 
 def write_step(
-    panels: FitResult | Panel,
+    result: FitResult | Panel,
     path: str | Path,
     *,
     thickness: float = 3.0,
     skin_side: SkinSide = "outer",
     skins: bool = False,
     schema: Schema = "AP242",
+    panels: Sequence[str] = (),
 ) -> None:
     """Write one STEP file, one product a panel with its name; for a folder with the proof beside it, see `deliver`.
 
     Args:
-        panels: a result, or one of its shapes.
+        result: a result, or one of its shapes.
         path: the file; one that is there is replaced once the new one is complete.
         thickness: of the sheet, mm.
         skin_side: "outer" or "inner".
         skins: write the skins as open shells instead of the solids.
         schema: "AP242" or "AP214".
+        panels: names of those that are written, * for anything; all if empty.
 
     Raises:
         PanelError: a panel cannot be built.
         DeliveryError: the file cannot be written.
-        SettingsError: the thickness, side or schema is none.
+        SettingsError: the thickness, side or schema is none, or there is no panel of such a name.
     """
+    from cadpanel.delivery.chosen_panels import chosen_panels
     from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 
-    built = _build(panels, thickness, skin_side, schema)
-    (write_skins if skins else write_solids)(Path(path), built, _title(panels), schema)
+    shapes = result.shapes if isinstance(result, FitResult) else (result,)
+    chosen = set(chosen_panels([shape.name for shape in shapes], [panels] if isinstance(panels, str) else panels))
+    built = _sheets([shape for shape in shapes if shape.name in chosen], thickness, skin_side, schema)
+    (write_skins if skins else write_solids)(Path(path), built, _title(result), schema)
 
 
 def _build(
     panels: FitResult | Panel, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
+    shapes = panels.shapes if isinstance(panels, FitResult) else [panels]
+    return _sheets(shapes, thickness, skin_side, schema)
+
+
+def _sheets(shapes: Sequence[Panel], thickness: float, skin_side: SkinSide, schema: Schema) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.sheets import build_panels
 
-    sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return build_panels(panels.shapes if isinstance(panels, FitResult) else [panels], sheet)
+    return build_panels(shapes, SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema))
 
 
 def _title(panels: FitResult | Panel) -> str:

@@ -205,6 +205,8 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
     "cadpanel.cli.tables": "tests/cli/test_fit.py",
+    "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
+    "cadpanel.delivery.records.blanks": "tests/delivery/records/test_flat_parts.py",
     "cadpanel.features.chain_shapes": "tests/features/test_panel_shapes.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import typer
 
@@ -12,11 +13,22 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.interrupt import first_interrupt_ends
 from cadpanel.cli.steps import Steps, steps
+from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.outputs.catalogue import chosen_outputs
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
+
+
+class Asked(NamedTuple):
+    """What is to be delivered."""
+
+    sheet: SheetSettings
+    shop: ShopSettings
+
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
 
@@ -27,6 +39,7 @@ def fit(
     out: options.Out,
     settings: FitSettings,
     sheet: SheetSettings,
+    shop: ShopSettings,
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
@@ -37,42 +50,50 @@ def fit(
     The smallest deviation is found at which every gap stays within --gap-tolerance. Ctrl-C while all panels are fitted
     at once delivers the best so far, a second one leaves nothing.
 
-    Exit codes: 0 all is well; 1 it ran, but the tolerance or the proof does not hold; 2 refused.
+    Exit codes: 0 all is well; 1 it ran, but the tolerance, the stock or the proof does not hold; 2 refused.
     """
     began = time.perf_counter()
+    chosen_outputs(shop.outputs)  # refused before anything else is done
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
-        report, shortfall = _run(reference, how, settings, sheet, folder, shown, time_limit)
+        report, shortfall = _run(reference, how, settings, Asked(sheet, shop), folder, shown, time_limit)
     if not quiet:
         # The tables are for people; numbers for programs are in report.json.
         from cadpanel.cli.tables import print_report
 
         print_report(report, out, time.perf_counter() - began)
     if shortfall is not None:
-        words = " ".join(shortfall.split())  # on one line, whatever the panels' names hold
-        sys.stderr.write(f"{words[0].upper()}{words[1:]}.\n")
+        sys.stderr.write(f"{shortfall}.\n")
         raise typer.Exit(1)
+
+
+def _sentence(said: str) -> str:
+    """On one line, whatever the panels' names hold."""
+    words = " ".join(said.split())
+    return f"{words[0].upper()}{words[1:]}"
 
 
 def _run(
     file: Path,
     how: ReferenceSettings,
     settings: FitSettings,
-    sheet: SheetSettings,
+    asked: Asked,
     folder: Path,
     shown: Steps,
     time_limit: float | None,
 ) -> tuple[ReportModel, str | None]:
-    """Read, fit, build, write and verify; the report, and what the tolerance lacks."""
+    """Read, fit, build, write and verify; the report, and what the tolerance or the stock lacks."""
     shown.begin(_READ, file.name)
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
     start_reader()
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
+    from cadpanel.delivery.records.stock import stock_shortfall
     from cadpanel.fitting.run import fit as fit_reference
 
     began = time.perf_counter()
     reference = read_reference(file, how)
     seconds_to_read = time.perf_counter() - began
+    chosen_panels([panel.name for panel in reference.panels], asked.shop.only)  # refused before the fit
     shown.begin(_FIRST)
     with first_interrupt_ends() as interrupted:
 
@@ -81,5 +102,8 @@ def _run(
             return not interrupted.heard()
 
         result = fit_reference(reference, settings, tell, time_limit=time_limit)
-    report = fill_delivery(result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
-    return report, result.shortfall()
+    report = fill_delivery(
+        result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
+    )
+    said = [sentence for sentence in (result.shortfall(), stock_shortfall(report)) if sentence is not None]
+    return report, ". ".join(_sentence(words) for words in said) or None

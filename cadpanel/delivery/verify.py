@@ -11,14 +11,20 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.delivery.chosen_panels import chosen_panels
+from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.folder import REPORT
-from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
+from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
+from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.patches import PlanePatchModel
-from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, read_report
+from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, read_report
+from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.sheet_checks import SkinSide
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,37 +56,65 @@ def verify(folder: str | Path) -> Verification:
     place = Path(folder)
     if not place.is_dir():
         raise DeliveryError(f"'{folder}' is not a folder: name one that 'cadpanel fit' wrote.")
-    for name in (REPORT, *(file for output in OUTPUTS if output.always for file in output.files)):
-        if not (place / name).is_file():
-            raise DeliveryError(f"'{folder}' holds no {name}, so it is no whole delivery: write it again.")
+    _demand_files(place, (REPORT,))
     report = read_report(place / REPORT)
-    certificate = prove(place, report.panels, report.seams, report.settings.thickness, report.settings.skin_side)
+    sheet, shop = report.settings.sheet(), report.settings.shop()
+    outputs = chosen_outputs(shop.outputs, OUTPUTS)
+    _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
+    certificate = prove(place, _contents(report, sheet, shop), outputs)
     failures = (*certificate.failures, *check_report(report, certificate))
     return Verification(report=report, certificate=certificate, failures=failures)
 
 
+def _demand_files(place: Path, names: Sequence[str]) -> None:
+    for name in names:
+        if not (place / name).exists():
+            raise DeliveryError(f"'{place}' holds no {name}, so it is no whole delivery: write it again.")
+
+
+def _contents(report: ReportModel, sheet: SheetSettings, shop: ShopSettings) -> Contents:
+    """What the files must tell of, from the report's own numbers."""
+    chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))
+    parts = flat_parts([recorded_shape(panel) for panel in report.panels], sheet, shop)
+    own = [place for place, panel in enumerate(report.panels) if panel.name in chosen]
+    return Contents(
+        title=Path(report.reference.file).stem,
+        sheet=sheet,
+        shop=shop,
+        records=tuple(report.panels[place] for place in own),
+        seams=report.seams,
+        parts=tuple(parts[place] for place in own),
+    )
+
+
 def prove(
-    folder: Path,
-    panels: Sequence[PanelModel],
-    seams: Sequence[SeamModel],
-    thickness: float,
-    skin_side: SkinSide,
-    helper: Helper | None = None,
+    folder: Path, contents: Contents, outputs: Sequence[Output], helper: Helper | None = None
 ) -> CertificateModel:
-    """What reading panels.step and skins.step in a folder back shows.
+    """What reading the files in a folder back shows.
 
     Args:
         folder: that holds the files.
-        panels: as the report states them.
-        seams: as the report states them.
-        thickness: of the sheet, mm.
-        skin_side: "outer" where the sheet lies behind the skin's normals.
+        contents: what they must tell of.
+        outputs: those that were written.
         helper: a second interpreter that is running already.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
-    depth = -thickness if skin_side == "outer" else thickness
+    found = {output.name: output.prove(folder, contents) for output in outputs if not output.always}
+    certificate = _prove_steps(folder, contents, helper)
+    return certificate.model_copy(
+        update={
+            "outputs": {name: proof.numbers for name, proof in found.items()},
+            "failures": (*certificate.failures, *(fault for proof in found.values() for fault in proof.failures)),
+        }
+    )
+
+
+def _prove_steps(folder: Path, contents: Contents, helper: Helper | None) -> CertificateModel:
+    """What panels.step and skins.step show."""
+    panels, sheet = contents.records, contents.sheet
+    depth = -sheet.thickness if sheet.skin_side == "outer" else sheet.thickness
     moved = {panel.name: panel.moved for panel in panels}
     expected = [
         ExpectedPanel(
@@ -94,7 +128,8 @@ def prove(
     ]
     gaps = [
         ExpectedSeam(panels=seam.panels, edges=seam.edges, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
-        for seam in seams
+        for seam in contents.seams
+        if set(seam.panels) <= set(moved)
     ]
     return _record(certify(folder / PANELS, folder / SKINS, expected, gaps, helper))
 

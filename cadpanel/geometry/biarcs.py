@@ -13,12 +13,13 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.flat_curves import FlatCurves
-from cadpanel.geometry.vectors import side_of
+from cadpanel.geometry.vectors import side_of, unit
 
 # Places at which a stretch is held against its two arcs.
 _SAMPLES = 17
-# Part of the tolerance that is used up at those places, so that it holds between them.
-_USED = 0.9
+# Part of the tolerance that is used up at those places, so that it holds between them, and where a flat arc is drawn as
+# a line.
+_USED = 0.8
 # A curve that leaves its chord by less than this part of the tolerance is a segment.
 _STRAIGHT = 0.01
 # By how much more stretches there are at most in the next attempt.
@@ -91,7 +92,7 @@ def _turn(before: Array, after: Array) -> Array:
 def _off_arc(end: Array, chord: Array, angle: Array, way: Array, points: Array, *, mirrored: bool = False) -> Array:
     """Distances (c, q) of points from the circles that leave `end` (c, 2) in the direction `way`.
 
-    `angle` (c,) is that between the way and the chord, half of what the arc sweeps.
+    `angle` (c,) is that from the way to the chord, half of what the arc sweeps; mirrored, it is told from its end.
     """
     curvature = (2.0 * np.sin(angle) / np.linalg.norm(chord, axis=-1))[:, None] * (-1.0 if mirrored else 1.0)
     to = points - end[:, None]
@@ -112,6 +113,21 @@ def arc_contour_area(vertices: Array) -> float:
     half = np.where(sweep == 0.0, 1.0, sweep)
     beside = np.where(sweep == 0.0, 0.0, square * (half - np.sin(half)) / (8.0 * np.sin(0.5 * half) ** 2))
     return float((polygon + beside).sum())
+
+
+def off_arcs(vertices: Array, points: Array) -> Array:
+    """Distances (q,) in mm of points (q, 2) from the nearest arc of a closed chain (v, 3), each below half a circle."""
+    start, stop = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
+    chord, half = stop - start, 2.0 * np.arctan(vertices[:, 2])
+    cosine, sine = np.cos(half)[:, None], np.sin(half)[:, None]
+    across = np.stack([-chord[:, 1], chord[:, 0]], axis=-1)
+    leaving, arriving = unit(cosine * chord - sine * across), unit(cosine * chord + sine * across)
+    places = points[None]
+    on_circle = _off_arc(start, chord, half, leaving, np.broadcast_to(places, (len(start), *points.shape)))
+    before = ((places - start[:, None]) * leaving[:, None]).sum(axis=-1) < 0.0
+    beyond = ((places - stop[:, None]) * arriving[:, None]).sum(axis=-1) > 0.0
+    ends = [np.linalg.norm(places - end[:, None], axis=-1) for end in (start, stop)]
+    return np.asarray(np.where(before, ends[0], np.where(beyond, ends[1], on_circle)).min(axis=0))
 
 
 def arc_circle(start: Array, stop: Array, bulge: float) -> tuple[Array, float]:

@@ -11,6 +11,8 @@ from cadpanel.arrays import Array
 
 # Rectangles whose areas differ by no more than this part are alike, and the most oblong of them is taken.
 _ALIKE = 1e-9
+# A part larger by no more than this is as large as the sheet, mm.
+_TOUCHING = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,7 +30,7 @@ class Rectangle:
 
     def fits(self, length: float, width: float) -> bool:
         """Whether it fits on a sheet of that size, laid along it or across."""
-        return self.length <= max(length, width) and self.width <= min(length, width)
+        return self.length <= max(length, width) + _TOUCHING and self.width <= min(length, width) + _TOUCHING
 
 
 def smallest_rectangle(points: Array) -> Rectangle:

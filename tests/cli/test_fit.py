@@ -31,7 +31,13 @@ PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
 # ------------------------------------------------------------------------------------------------------- it goes well
 def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
-    assert sorted(path.name for path in delivered.iterdir()) == ["panels.step", "report.json", "skins.step"]
+    assert sorted(path.name for path in delivered.iterdir()) == [
+        "flat",
+        "panels.step",
+        "report.json",
+        "schedule.csv",
+        "skins.step",
+    ]
     assert list(delivered.parent.iterdir()) == [delivered]
 
 
@@ -92,6 +98,9 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
     options += (
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
         " --blend 500-900 --blend N-02=45-62.5%"
+        " --outputs step,flats --only N-01,*3 --k-factor 0.4 --chord 0.02 --roll-pitch 80 --dxf-entities lines"
+        " --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
+        " --stock 1500x3000,2500x4000 --facet-height 0.3"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code in (0, 1), answer.err
@@ -116,6 +125,18 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "thickness": 5.0,
         "skin_side": "inner",
         "step_schema": "AP214",
+        "outputs": ["step", "flats"],
+        "only": ["N-01", "*3"],
+        "k_factor": 0.4,
+        "chord": 0.02,
+        "roll_pitch": 80.0,
+        "dxf_entities": "lines",
+        "dxf_layers": [["CUT", "0"], ["BEND", "Folds"]],
+        "dxf_contour_only": True,
+        "dxf_name_length": 20,
+        "density": 7850.0,
+        "stock": [[1500.0, 3000.0], [2500.0, 4000.0]],
+        "facet_height": 0.3,
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -333,3 +354,35 @@ def test_what_goes_to_a_file_is_plain_text(lip_step: Path, tmp_path: Path) -> No
     assert answer.stderr == ""
     assert "\x1b" not in answer.stdout
     assert max(map(len, answer.stdout.splitlines())) <= 200
+
+
+def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_delivered(
+    run: Run, lip_step: Path, tmp_path: Path
+) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--quiet", "--stock", "1000x2000")
+    assert answer.code == 1
+    assert answer.is_one_sentence()
+    assert "3 of 3 blanks fit no sheet of 1000x2000 mm: 'N-01' (" in answer.err
+    assert run("verify", tmp_path / "out").code == 0
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--quiet", "--stock", "1000x2000,2500x3000", "--overwrite")
+    assert (answer.code, answer.err) == (0, "")
+    panels = read_report(tmp_path / "out" / "report.json").panels
+    assert {panel.blank.stock for panel in panels if panel.blank is not None} == {"2500x3000"}
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule."),
+        ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
+        ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
+        ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),
+        ("--k-factor 2", "The K-factor must be between 0 and 1, not 2."),
+    ],
+)
+def test_what_cannot_be_delivered_is_refused_before_the_fit(
+    run: Run, lip_step: Path, tmp_path: Path, words: str, said: str
+) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", *words.split())
+    assert (answer.code, answer.err) == (2, f"{said}\n")
+    assert list(tmp_path.iterdir()) == []

@@ -8,11 +8,12 @@ import pytest
 
 from cadpanel.delivery import deliver as delivering
 from cadpanel.delivery import verify as verifying
-from cadpanel.delivery.folder import COMPARISON, OWN_FILES, REPORT
+from cadpanel.delivery.folder import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT
 from cadpanel.delivery.outputs.catalogue import OUTPUTS
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.errors import DeliveryError
+from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.errors import DeliveryError, SettingsError
 from tests.delivered import fitted
 
 
@@ -29,17 +30,54 @@ class NameList(Output):
 
 
 def test_outputs_have_names_and_files_of_their_own() -> None:
-    files = [file for output in OUTPUTS for file in output.files]
+    files = [file for output in OUTPUTS for file in (*output.files, *output.folders)]
     assert len({output.name for output in OUTPUTS}) == len(OUTPUTS)
     assert len(set(files)) == len(files)
     assert not {REPORT, COMPARISON} & set(files)
-    assert {REPORT, COMPARISON, *files} == OWN_FILES
+    assert {REPORT, COMPARISON, *files} == OWN_FILES | OWN_FOLDERS.keys()
 
 
-def test_a_delivery_holds_the_report_and_what_is_always_there(tmp_path: Path) -> None:
-    delivering.deliver(fitted(), tmp_path / "out")
-    always = {file for output in OUTPUTS if output.always for file in output.files}
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {REPORT, *always}
+@pytest.mark.parametrize("asked", [None, ("step",), ("flats",)])
+def test_a_delivery_holds_the_report_what_is_always_there_and_what_was_asked_for(
+    tmp_path: Path, asked: tuple[str, ...] | None
+) -> None:
+    delivering.deliver(fitted(), tmp_path / "out", shop=ShopSettings(outputs=asked))
+    wanted = [
+        file
+        for output in OUTPUTS
+        if output.always or (output.unasked if asked is None else output.name in asked)
+        for file in (*output.files, *output.folders)
+    ]
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {REPORT, *wanted}
+    assert verifying.verify(tmp_path / "out").holds
+
+
+def test_an_output_that_there_is_not_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"there is no output 'flat'; choose from step, flats"):
+        delivering.deliver(fitted(), tmp_path / "out", shop=ShopSettings(outputs="flat,step"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_only_the_panels_that_are_asked_for_are_delivered_and_all_are_reported(tmp_path: Path) -> None:
+    report = delivering.deliver(fitted(), tmp_path / "out", shop=ShopSettings(only="*1,N 3"))
+    assert (report.certificate.solids, report.certificate.skins, len(report.panels)) == (2, 2, 3)
+    assert {path.name for path in (tmp_path / "out" / "flat").iterdir()} == {"N 1.dxf", "N 3.dxf", "all.dxf"}
+    assert verifying.verify(tmp_path / "out").holds
+    with pytest.raises(SettingsError, match="there is no panel 'N 4' to deliver"):
+        delivering.deliver(fitted(), tmp_path / "none", shop=ShopSettings(only="N 4"))
+
+
+def test_a_folder_of_drawings_is_replaced_unless_it_holds_what_is_not_ours(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    delivering.deliver(fitted(), out)
+    delivering.deliver(fitted(), out, overwrite=True)
+    (out / "flat" / "N 1.dxf").write_bytes(b"0\r\nSECTION\r\n")
+    with pytest.raises(DeliveryError, match=r"also holds 'flat/N 1\.dxf', which cadpanel did not write"):
+        delivering.deliver(fitted(), out, overwrite=True)
+    (out / "flat" / "N 1.dxf").unlink()
+    (out / "flat" / "nested").mkdir()
+    with pytest.raises(DeliveryError, match="also holds 'flat/nested'"):
+        delivering.deliver(fitted(), out, overwrite=True)
 
 
 def test_a_new_output_is_written_told_of_and_demanded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -63,7 +101,7 @@ def test_an_output_that_is_not_always_there_is_neither_written_nor_demanded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = NameList()
-    asked.always = False
+    asked.always = asked.unasked = False
     for module in (delivering, verifying):
         monkeypatch.setattr(module, "OUTPUTS", (*OUTPUTS, asked))
     delivering.deliver(fitted(), tmp_path / "out")

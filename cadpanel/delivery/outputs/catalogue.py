@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
-from cadpanel.delivery.outputs.step_files import PanelsStep, SkinsStep
+from cadpanel.delivery.outputs.schedule import Schedule
+from cadpanel.delivery.outputs.step_files import STEP, PanelsStep, SkinsStep
+from cadpanel.errors import SettingsError
 
 OUTPUTS: tuple[Output, ...] = (
     SkinsStep(),  # first: a second interpreter reads them back while the panels are being written
     PanelsStep(),
+    FlatDxf(),
+    Schedule(),
 )
+
+
+def chosen_outputs(names: Sequence[str] | None, outputs: Sequence[Output] = OUTPUTS) -> tuple[Output, ...]:
+    """The outputs of a delivery by their names, with those that every delivery has; all that need no asking if None.
+
+    Raises:
+        SettingsError: there is no output of that name, or one that it needs is missing.
+    """
+    known = [output.name for output in outputs if not output.always]
+    for name in names or ():
+        if name not in (STEP, *known):
+            raise SettingsError(f"there is no output '{name}'; choose from {', '.join((STEP, *known))}")
+    return tuple(
+        output for output in outputs if output.always or (output.unasked if names is None else output.name in names)
+    )

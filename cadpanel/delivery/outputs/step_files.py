@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 PANELS = "panels.step"
 SKINS = "skins.step"
+STEP = "step"
+"""What both are called together where outputs are chosen; they are always there."""
 PALETTE: tuple[Color, ...] = (
     (0.62, 0.68, 0.73),
     (0.76, 0.72, 0.65),

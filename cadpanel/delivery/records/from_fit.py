@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from cadpanel.delivery.records.blanks import CutModel
+from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.from_shape import patch_models, vector
 from cadpanel.delivery.records.report import (
     BaselinesModel,
@@ -23,11 +25,15 @@ from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.result import FitResult
+from cadpanel.geometry.bevels import end_bevels
+from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
 # An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
 WORTH_A_NOTE = 0.02
+KG_PER_MM3 = 1e-9
+"""What a mm3 weighs at a density of 1 kg/m3."""
 FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
@@ -73,6 +79,32 @@ def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[Panel
     return tuple(
         _panel(result, index, reference, panel)
         for index, (reference, panel) in enumerate(zip(result.reference.panels, built, strict=True))
+    )
+
+
+def with_flat_parts(
+    records: Sequence[PanelModel], built: Sequence[PanelSheet], parts: Sequence[FlatPart], density: float
+) -> tuple[PanelModel, ...]:
+    """Records that say besides how every panel is cut, bent, and how heavy it is at a density in kg/m3."""
+    return tuple(
+        record.model_copy(
+            update={
+                "blank": part.blank,
+                "mass": panel.volume * density * KG_PER_MM3,
+                "bends": part.bends,
+                "cuts": _cuts(panel.shape),
+                "bevels": tuple(map(tuple, np.degrees(end_bevels(panel.shape)).tolist())),
+            }
+        )
+        for record, panel, part in zip(records, built, parts, strict=True)
+    )
+
+
+def _cuts(shape: Panel) -> tuple[CutModel, ...]:
+    points, normals = shape.cuts()
+    offsets = (points * normals).sum(axis=-1).tolist()
+    return tuple(
+        CutModel(normal=vector(normal), offset=offset) for normal, offset in zip(normals, offsets, strict=True)
     )
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from cadpanel.delivery.records.blanks import BendModel, BlankModel, CutModel, Pair, Positive
 from cadpanel.delivery.records.jsonfile import (
     NonNegative,
     NonNegativeCount,
@@ -26,7 +27,6 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
 Setting = bool | str | int | float | tuple[str | int | float, ...]
-Positive = Annotated[float, Field(gt=0.0)]
 
 
 class UnitsModel(Record):
@@ -91,6 +91,12 @@ class PanelModel(Record):
             along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
         notes: what the fabricator should know, one sentence each; also of a bend that is not where it was told to be.
+        blank: the panel as a flat part; None in reports from before it was known, as are the next ones.
+        mass: of the sheet, kg.
+        bends: its curved patches in the order of the walk, as they are bent.
+        cuts: the planes in which its ends lie; none of a polygon.
+        bevels: least and largest angle between wall and sheet normal along end 0 and end 1, square to the edge;
+            positive where the outer face is the shorter one. Sides and the edges of polygons are square.
     """
 
     name: str
@@ -108,6 +114,11 @@ class PanelModel(Record):
     taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
+    blank: BlankModel | None = None
+    mass: Positive | None = None
+    bends: tuple[BendModel, ...] = ()
+    cuts: tuple[CutModel, ...] = ()
+    bevels: tuple[Pair, ...] = ()
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:
@@ -199,6 +210,7 @@ class CertificateModel(Record):
         volume_error: largest relative difference between a solid's volume and the formula's.
         names_kept: whether every panel was found again under its name.
         max_seam_gap: mm, measured on the faces that were read.
+        outputs: what the files of other outputs showed, by the output's name.
         failures: what does not hold, one sentence each; empty where everything does.
     """
 
@@ -210,6 +222,7 @@ class CertificateModel(Record):
     volume_error: NonNegative
     names_kept: bool
     max_seam_gap: NonNegative
+    outputs: dict[str, dict[str, NonNegative]] = Field(default_factory=dict)
     failures: tuple[str, ...] = ()
 
 

@@ -1,0 +1,61 @@
+"""Are the numbers of a schedule those of the panels? Everything in it is worked out again from the report's shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cadpanel.delivery.contents import Contents
+from cadpanel.delivery.records.blanks import BendModel
+from cadpanel.delivery.records.flat_parts import FlatPart
+from cadpanel.delivery.records.from_fit import KG_PER_MM3
+from cadpanel.delivery.records.report import PanelModel
+
+SAME_LENGTH = 1e-6
+"""Lengths in mm, and angles in degrees, that are meant to be one may differ by this; areas by as much of themselves."""
+SAME_BLANK = 0.01
+"""The same for the sides of a blank, which are told to this, mm."""
+SAME_MASS = 1e-9
+"""Relative difference of a mass from volume times density."""
+
+
+def number_faults(contents: Contents) -> tuple[float, tuple[str, ...]]:
+    """The largest relative error of a mass, and one sentence for every number that is not the panel's."""
+    errors, failures = [0.0], []
+    for record, part in zip(contents.records, contents.parts, strict=True):
+        if record.blank is None or record.mass is None:
+            failures.append(f"Panel '{record.name}': the report has no blank or no mass of it.")
+            continue
+        error = abs(record.mass / (record.volume * contents.shop.density * KG_PER_MM3) - 1.0)
+        errors.append(error)
+        wrong = [] if error <= SAME_MASS else ["mass"]
+        wrong += list(_wrong(record, part))
+        failures += [f"Panel '{record.name}': the report's {what} is not that of the panel." for what in wrong]
+    return max(errors), tuple(failures)
+
+
+def _wrong(record: PanelModel, part: FlatPart) -> Iterator[str]:
+    stated, found = record.blank, part.blank
+    assert stated is not None
+    sizes = np.abs([stated.width - found.width, stated.height - found.height])
+    if not sizes.max() <= SAME_BLANK:
+        yield "blank"
+    if not abs(stated.area / found.area - 1.0) <= SAME_LENGTH:
+        yield "area of its blank"
+    if stated.edges.keys() != found.edges.keys() or any(
+        not abs(stated.edges[edge] - length) <= SAME_LENGTH for edge, length in found.edges.items()
+    ):
+        yield "length of an edge"
+    if (stated.stock, stated.file) != (found.stock, found.file):
+        yield "sheet of the stock or name of its drawing"
+    if len(record.bends) != len(part.bends) or not all(map(_same_bend, record.bends, part.bends)):
+        yield "bend"
+
+
+def _same_bend(one: BendModel, other: BendModel) -> bool:
+    first, second = (
+        np.array([*bend.radius, *bend.lengths, *bend.angles, bend.sweep, bend.half_angle, bend.patch, bend.hits])
+        for bend in (one, other)
+    )
+    return one.direction == other.direction and bool(np.abs(first - second).max() <= SAME_LENGTH)

@@ -10,6 +10,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
+from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents
@@ -19,6 +20,7 @@ from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
+from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
@@ -106,7 +108,11 @@ def prove(
     return certificate.model_copy(
         update={
             "outputs": {name: proof.numbers for name, proof in found.items()},
-            "failures": (*certificate.failures, *(fault for proof in found.values() for fault in proof.failures)),
+            "failures": (
+                *certificate.failures,
+                *part_faults(contents.records, contents.parts, contents.shop.density),
+                *(fault for proof in found.values() for fault in proof.failures),
+            ),
         }
     )
 
@@ -123,8 +129,9 @@ def _prove_steps(folder: Path, contents: Contents, helper: Helper | None) -> Cer
             kinds=tuple(patch.kind for patch in panel.patches),
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
+            flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
         )
-        for panel in panels
+        for panel, part in zip(panels, contents.parts, strict=True)
     ]
     gaps = [
         ExpectedSeam(panels=seam.panels, edges=seam.edges, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
@@ -151,6 +158,8 @@ def _record(certificate: Certificate) -> CertificateModel:
         face_kinds=certificate.face_kinds,
         max_tangency_error=certificate.max_tangency_error,
         volume_error=certificate.volume_error,
+        flat_area_error=certificate.flat_area_error,
+        flat_length_error=certificate.flat_length_error,
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         failures=certificate.failures,

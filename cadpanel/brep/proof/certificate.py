@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.proof.flat_checks import ExpectedFlat, FlatFacts, check_flats
 from cadpanel.brep.proof.parallel import Helper, inspect_files
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
@@ -47,6 +48,7 @@ class ExpectedPanel:
         kinds: kinds of its patches in the order of the walk, as built.
         corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
         far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
+        flat: what its flat pattern says; None to leave it alone.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -56,6 +58,7 @@ class ExpectedPanel:
     kinds: tuple[PatchKind, ...]
     corners: Array
     far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
+    flat: ExpectedFlat | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,6 +87,8 @@ class Certificate:
         face_kinds: number of faces of each kind among the solids.
         max_tangency_error: greatest angle in radians between neighbouring patches, solids and skins.
         volume_error: greatest relative difference of a solid's volume from the expected one.
+        flat_area_error: greatest relative difference of a flat pattern's area from that of the surface in the solid.
+        flat_length_error: greatest difference of an edge's length, unrolled, from that on the skin, mm.
         names_kept: whether both files hold exactly the expected names, each once.
         max_corner_error: farthest corner of a skin from where it is expected, mm.
         seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
@@ -97,6 +102,8 @@ class Certificate:
     face_kinds: dict[str, int]
     max_tangency_error: float
     volume_error: float
+    flat_area_error: float
+    flat_length_error: float
     names_kept: bool
     max_corner_error: float
     seam_gaps: tuple[float, ...]
@@ -131,6 +138,7 @@ def certify(
         for found, label in ((solids, "solid"), (skins, "skin"))
     ]
     volume_error, corner_error = 0.0, 0.0
+    flats: list[FlatFacts] = []
     for panel in panels:
         if panel.name in solid_of:
             volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
@@ -138,6 +146,9 @@ def certify(
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
+            if panel.flat is not None:
+                flats.append(FlatFacts(panel.flat, panel.far_planes, solid_of[panel.name], skin_of[panel.name]))
+    flat_errors = check_flats(flats, failures)
     gaps = _seam_gaps(panels, skin_of, seams, failures)
     kinds = Counter[str]()
     for facts in solids:
@@ -149,6 +160,8 @@ def certify(
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
         max_tangency_error=max(angles),
         volume_error=volume_error,
+        flat_area_error=flat_errors[0],
+        flat_length_error=flat_errors[1],
         names_kept=names_kept,
         max_corner_error=corner_error,
         seam_gaps=tuple(gaps),

@@ -25,6 +25,8 @@ class ShapeFacts:
         closed: whether every edge belongs to exactly two faces.
         face_kinds: number of faces of each of FACE_KINDS.
         volume: the kernel's volume, mm3; 0 for a shape without solids.
+        areas: (f,) the kernel's area of every face, mm2.
+        planes: (f, 6) location and normal of its plane; nothing but 0 for other faces.
         straight_edges: (m, 2, 3) ends of the straight edges that two known faces share, mm.
         edge_surfaces: (m, 2, 9) the two surfaces: point on axis or plane, axis or plane normal, radius, half angle,
             and +1 or -1 by which the surface's own normal becomes the face's. A plane has radius 0.
@@ -41,6 +43,8 @@ class ShapeFacts:
     closed: bool
     face_kinds: dict[str, int]
     volume: float
+    areas: Array
+    planes: Array
     straight_edges: Array
     edge_surfaces: Array
     vertices: Array

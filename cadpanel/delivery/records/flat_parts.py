@@ -15,6 +15,7 @@ from cadpanel.delivery.records.from_shape import patch_models
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.geometry.flat_curves import joined
 from cadpanel.geometry.flat_sizes import FlatSize, flat_sizes
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import other_face
@@ -37,12 +38,16 @@ class FlatPart:
         size: its exact numbers.
         blank: what the report says of it.
         bends: what it says of its bends.
+        share: where that surface lies, from the skin into the sheet, a part of the thickness.
+        skin_pieces: lengths of all pieces of the skin's own outline, unrolled, mm.
     """
 
     pattern: FlatPattern
     size: FlatSize
     blank: BlankModel
     bends: tuple[BendModel, ...]
+    share: float
+    skin_pieces: Array
 
 
 def flat_parts(shapes: Sequence[Panel], sheet: SheetSettings, shop: ShopSettings) -> tuple[FlatPart, ...]:
@@ -53,6 +58,9 @@ def flat_parts(shapes: Sequence[Panel], sheet: SheetSettings, shop: ShopSettings
     """
     offsets = np.array([neutral_offset(shape, sheet.thickness, sheet.skin_side, shop.k_factor) for shape in shapes])
     patterns = unroll_all(shapes, offsets)
+    skins = unroll_all(shapes, np.zeros(len(shapes)))
+    lengths = joined([skin.curves for skin in skins]).lengths()
+    skin_pieces = np.split(lengths, np.cumsum([len(skin.curves) for skin in skins])[:-1])
     names = file_names([shape.name for shape in shapes], shop.dxf_name_length, taken=[ALL])
     return tuple(
         FlatPart(
@@ -67,8 +75,12 @@ def flat_parts(shapes: Sequence[Panel], sheet: SheetSettings, shop: ShopSettings
                 file=name,
             ),
             bends=_bends(shape, pattern, size, sheet, shop),
+            share=abs(offset) / sheet.thickness,
+            skin_pieces=pieces,
         )
-        for shape, pattern, size, name in zip(shapes, patterns, flat_sizes(patterns), names, strict=True)
+        for shape, pattern, size, name, offset, pieces in zip(
+            shapes, patterns, flat_sizes(patterns), names, offsets.tolist(), skin_pieces, strict=True
+        )
     )
 
 

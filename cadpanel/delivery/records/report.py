@@ -208,6 +208,9 @@ class CertificateModel(Record):
         face_kinds: how many faces of each kind the panels' main faces are.
         max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
         volume_error: largest relative difference between a solid's volume and the formula's.
+        flat_area_error: largest relative difference between a flat pattern's area and that of the surface in the solid
+            that it unrolls.
+        flat_length_error: largest difference between an edge of a skin and the same edge unrolled, mm.
         names_kept: whether every panel was found again under its name.
         max_seam_gap: mm, measured on the faces that were read.
         outputs: what the files of other outputs showed, by the output's name.
@@ -220,6 +223,8 @@ class CertificateModel(Record):
     face_kinds: dict[str, NonNegativeCount]
     max_tangency_error: NonNegative
     volume_error: NonNegative
+    flat_area_error: NonNegative = 0.0
+    flat_length_error: NonNegative = 0.0
     names_kept: bool
     max_seam_gap: NonNegative
     outputs: dict[str, dict[str, NonNegative]] = Field(default_factory=dict)

@@ -9,6 +9,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel
+from cadpanel.errors import DeliveryError
 from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -16,8 +17,17 @@ from cadpanel.geometry.vectors import unit
 
 
 def recorded_shape(panel: PanelModel) -> PanelShape | PolygonShape:
-    """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm."""
+    """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm.
+
+    Raises:
+        DeliveryError: the record does not say how the panel's ends are cut, or what part it is.
+    """
     corners = np.array(panel.corners)
+    if panel.blank is None or panel.mass is None or len(panel.cuts) != (0, 2)[len(corners) - 1]:
+        raise DeliveryError(
+            f"The report tells of panel '{panel.name}' without its blank, mass or cuts, as older versions did: write "
+            "the delivery again."
+        )
     if len(corners) == 1:
         (plane,) = panel.patches
         assert isinstance(plane, PlanePatchModel)

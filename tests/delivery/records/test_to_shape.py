@@ -8,6 +8,7 @@ import pytest
 from cadpanel.delivery.records.from_shape import patch_models, vector
 from cadpanel.delivery.records.report import PanelModel
 from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.errors import DeliveryError
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PolygonShape
 from tests.chains import FEATURES
@@ -21,6 +22,8 @@ def recorded(shape: Any) -> PanelModel:
     """The part of a panel's record that tells of its shape."""
     points, normals = shape.cuts()
     return PanelModel.model_construct(
+        blank=object(),
+        mass=1.0,
         name=shape.name,
         feature=shape.feature,
         corners=tuple(tuple(vector(corner) for corner in row) for row in shape.corners()),
@@ -64,3 +67,10 @@ def test_cones_that_widen_either_way_and_bend_either_way_come_back(half_angle, c
         again: Any = recorded_shape(recorded(shape))
         assert_same(again, shape)
         assert np.abs(again.normals - shape.normals).max() < 1e-10
+
+
+def test_a_record_of_an_older_version_is_refused() -> None:
+    record = recorded(random_panel(1))
+    for update in ({"blank": None}, {"mass": None}, {"cuts": ()}, {"cuts": record.cuts[:1]}):
+        with pytest.raises(DeliveryError, match="panel 'A-01' without its blank, mass or cuts"):
+            recorded_shape(record.model_copy(update=update))

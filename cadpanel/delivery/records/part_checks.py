@@ -1,12 +1,11 @@
-"""Are the numbers of a schedule those of the panels? Everything in it is worked out again from the report's shapes."""
+"""Is what a report says of parts, blanks, masses and bends, that of its panels? All of it is worked out again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.records.blanks import BendModel
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.from_fit import KG_PER_MM3
@@ -20,24 +19,22 @@ SAME_MASS = 1e-9
 """Relative difference of a mass from volume times density."""
 
 
-def number_faults(contents: Contents) -> tuple[float, tuple[str, ...]]:
-    """The largest relative error of a mass, and one sentence for every number that is not the panel's."""
-    errors, failures = [0.0], []
-    for record, part in zip(contents.records, contents.parts, strict=True):
-        if record.blank is None or record.mass is None:
-            failures.append(f"Panel '{record.name}': the report has no blank or no mass of it.")
-            continue
-        error = abs(record.mass / (record.volume * contents.shop.density * KG_PER_MM3) - 1.0)
-        errors.append(error)
-        wrong = [] if error <= SAME_MASS else ["mass"]
-        wrong += list(_wrong(record, part))
-        failures += [f"Panel '{record.name}': the report's {what} is not that of the panel." for what in wrong]
-    return max(errors), tuple(failures)
+def part_faults(records: Sequence[PanelModel], parts: Sequence[FlatPart], density: float) -> tuple[str, ...]:
+    """One sentence for every number of a record that is not the part's, at a density in kg/m3."""
+    return tuple(
+        f"Panel '{record.name}': the report's {what} is not that of the panel."
+        for record, part in zip(records, parts, strict=True)
+        for what in _wrong(record, part, density)
+    )
 
 
-def _wrong(record: PanelModel, part: FlatPart) -> Iterator[str]:
+def _wrong(record: PanelModel, part: FlatPart, density: float) -> Iterator[str]:
     stated, found = record.blank, part.blank
-    assert stated is not None
+    if stated is None or record.mass is None:
+        yield "blank or mass"
+        return
+    if not abs(record.mass / (record.volume * density * KG_PER_MM3) - 1.0) <= SAME_MASS:
+        yield "mass"
     sizes = np.abs([stated.width - found.width, stated.height - found.height])
     if not sizes.max() <= SAME_BLANK:
         yield "blank"

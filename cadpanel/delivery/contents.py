@@ -24,6 +24,7 @@ class Contents:
         records: the panels as the report tells of them.
         seams: all seams of the reference.
         parts: the panels as flat parts.
+        origin: what has to be added to coordinates to have the model's, mm.
     """
 
     title: str
@@ -32,6 +33,7 @@ class Contents:
     records: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
     parts: tuple[FlatPart, ...]
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,6 +16,7 @@ from cadpanel.delivery.outputs.step_files import SKINS
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.from_fit import (
     baselines_record,
+    origin_record,
     panel_records,
     reference_record,
     seam_records,
@@ -104,6 +105,7 @@ def fill_delivery(
             records=tuple(panels[place] for place in own),
             seams=seams,
             parts=tuple(parts[place] for place in own),
+            origin=result.reference.origin,
         )
         _write(folder, delivery, outputs, tell, helper)
         written_at = time.perf_counter()
@@ -113,6 +115,7 @@ def fill_delivery(
     _demand(certificate)
     report = ReportModel(
         reference=reference_record(result.reference),
+        origin=origin_record(result.reference),
         settings=settings_record(result.reference, result.settings, sheet, shop),
         solve=solve_record(result),
         panels=panels,

@@ -45,7 +45,7 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "outputs"),
             metavar="NAME,...",
-            help="What to write besides report.json: step, flats, schedule; all of it if not given.",
+            help="What to write besides report.json: step, flats, schedule, setting-out; all if not given.",
         ),
     )
     only: str | Sequence[str] = setting(

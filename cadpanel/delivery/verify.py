@@ -86,6 +86,7 @@ def _contents(report: ReportModel, sheet: SheetSettings, shop: ShopSettings) -> 
         records=tuple(report.panels[place] for place in own),
         seams=report.seams,
         parts=tuple(parts[place] for place in own),
+        origin=report.origin.offset,
     )
 
 

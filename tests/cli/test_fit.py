@@ -36,6 +36,7 @@ def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
         "panels.step",
         "report.json",
         "schedule.csv",
+        "setting_out.csv",
         "skins.step",
     ]
     assert list(delivered.parent.iterdir()) == [delivered]
@@ -373,7 +374,7 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule."),
+        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out."),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cadpanel.delivery import deliver as delivering
@@ -53,9 +55,24 @@ def test_a_delivery_holds_the_report_what_is_always_there_and_what_was_asked_for
 
 
 def test_an_output_that_there_is_not_is_refused_with_those_that_there_are(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match=r"there is no output 'flat'; choose from step, flats"):
+    with pytest.raises(
+        SettingsError, match=r"there is no output 'flat'; choose from step, flats, schedule, setting-out"
+    ):
         delivering.deliver(fitted(), tmp_path / "out", shop=ShopSettings(outputs="flat,step"))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
+    result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
+    report = delivering.deliver(replace(result, reference=replace(result.reference, origin=far)), tmp_path / "far")
+    assert (report.origin.kept, report.origin.offset) == (False, far)
+    assert verifying.verify(tmp_path / "far").holds
+    assert delivering.deliver(result, tmp_path / "near").origin.kept
+    there, here = (
+        np.loadtxt(tmp_path / name / "setting_out.csv", delimiter=",", skiprows=1, usecols=(-3, -2, -1), quotechar='"')
+        for name in ("far", "near")
+    )
+    assert there - here == pytest.approx(np.broadcast_to(far, here.shape), abs=1e-6)
 
 
 def test_only_the_panels_that_are_asked_for_are_delivered_and_all_are_reported(tmp_path: Path) -> None:

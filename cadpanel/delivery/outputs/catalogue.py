@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.schedule import Schedule
+from cadpanel.delivery.outputs.setting_out import SettingOut
 from cadpanel.delivery.outputs.step_files import STEP, PanelsStep, SkinsStep
 from cadpanel.errors import SettingsError
 
@@ -15,6 +16,7 @@ OUTPUTS: tuple[Output, ...] = (
     PanelsStep(),
     FlatDxf(),
     Schedule(),
+    SettingOut(),
 )
 
 

@@ -13,6 +13,7 @@ from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.from_shape import patch_models, vector
 from cadpanel.delivery.records.report import (
     BaselinesModel,
+    OriginModel,
     PanelModel,
     ReferenceModel,
     SeamModel,
@@ -46,6 +47,11 @@ def reference_record(reference: Reference) -> ReferenceModel:
         notes=reference.notes,
         reading=_reading(reference.settings),
     )
+
+
+def origin_record(reference: Reference) -> OriginModel:
+    """Where the fit's coordinates lie in the model's."""
+    return OriginModel(kept=not any(reference.origin), offset=reference.origin)
 
 
 def _reading(settings: ReferenceSettings) -> dict[str, Setting]:

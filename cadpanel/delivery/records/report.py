@@ -53,6 +53,18 @@ class ReferenceModel(Record):
     reading: dict[str, Setting] = Field(default_factory=dict)
 
 
+class OriginModel(Record):
+    """Where the coordinates of all files lie in the model's.
+
+    Attributes:
+        kept: whether they are the model's own.
+        offset: what has to be added to them, mm; whole metres.
+    """
+
+    kept: bool = True
+    offset: Vector = (0.0, 0.0, 0.0)
+
+
 class SolveModel(Record):
     """How the result was reached.
 
@@ -250,6 +262,7 @@ class ReportModel(Record):
     schema_name: Literal["cadpanel.report/1"] = Field(default="cadpanel.report/1", alias="schema")
     units: UnitsModel = UnitsModel()
     reference: ReferenceModel
+    origin: OriginModel = OriginModel()
     settings: SettingsModel
     solve: SolveModel
     panels: tuple[PanelModel, ...]

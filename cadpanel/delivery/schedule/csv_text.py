@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Sequence
+from decimal import Decimal
 
-Cell = str | int | float | None
+Cell = str | int | float | Decimal | None
 Row = Sequence[Cell]
 _MARK = "\ufeff"  # without it, Excel takes the file for another encoding
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r")
@@ -25,4 +26,4 @@ def _shown(cell: Cell) -> str:
         return ""
     if isinstance(cell, str):
         return f"'{cell}" if cell.startswith(_FORMULAS) else cell
-    return str(cell)
+    return f"{cell:f}" if isinstance(cell, Decimal) else str(cell)

@@ -24,7 +24,7 @@ class Contents:
         records: the panels as the report tells of them.
         seams: all seams of the reference.
         parts: the panels as flat parts.
-        origin: what has to be added to coordinates to have the model's, mm.
+        origin: what has to be added to local coordinates to have the model's, mm.
     """
 
     title: str
@@ -34,6 +34,11 @@ class Contents:
     seams: tuple[SeamModel, ...]
     parts: tuple[FlatPart, ...]
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def placed(self) -> tuple[float, float, float]:
+        """Where the local origin lies in STEP files, mm."""
+        return self.origin if self.shop.origin == "keep" else (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

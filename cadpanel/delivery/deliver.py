@@ -115,7 +115,7 @@ def fill_delivery(
     _demand(certificate)
     report = ReportModel(
         reference=reference_record(result.reference),
-        origin=origin_record(result.reference),
+        origin=origin_record(result.reference, shop.origin),
         settings=settings_record(result.reference, result.settings, sheet, shop),
         solve=solve_record(result),
         panels=panels,

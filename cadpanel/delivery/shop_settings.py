@@ -12,6 +12,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.reference.settings import choices_of
 from cadpanel.setting import Option, Range, check_ranges, setting
 
+Origin = Literal["local", "keep"]
 DxfEntities = Literal["polyline", "lines"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
@@ -27,6 +28,7 @@ class ShopSettings:
     Attributes:
         outputs: names of outputs; None for all that are made unasked.
         only: names of the panels to deliver, * for anything; all if empty.
+        origin: where STEP files lie of a model far away: near their own origin, or where the model lies.
         k_factor: distance of the surface that keeps its lengths from a bend's inner face, a share of the thickness.
         chord: how far arcs in a drawing may lie from the exact contour, mm.
         roll_pitch: largest distance between two rulings of a bend, mm.
@@ -57,6 +59,9 @@ class ShopSettings:
             help="Deliver only these panels, * for anything; all are fitted.",
             told=False,
         ),
+    )
+    origin: Origin = setting(
+        "local", option=Option(help="STEP files of a model on a map: near their own origin, or where the model lies?")
     )
     k_factor: float = setting(
         0.5,
@@ -124,6 +129,8 @@ class ShopSettings:
         check_ranges(self)
         if self.dxf_entities not in get_args(DxfEntities):
             raise SettingsError(f"contours are drawn as polyline or lines, not as {self.dxf_entities!r}")
+        if self.origin not in get_args(Origin):
+            raise SettingsError(f"the origin is local or kept ('keep'), not {self.origin!r}")
         if not isinstance(self.dxf_contour_only, bool):
             raise SettingsError(f"'dxf_contour_only' is yes or no, True or False, not {self.dxf_contour_only!r}")
         if self.outputs is not None:
@@ -199,6 +206,7 @@ class ShopKeywords(TypedDict, total=False):
 
     outputs: str | Sequence[str] | None
     only: str | Sequence[str]
+    origin: Origin
     k_factor: float
     chord: float
     roll_pitch: float

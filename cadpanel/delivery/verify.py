@@ -131,6 +131,7 @@ def _prove_steps(folder: Path, contents: Contents, helper: Helper | None) -> Cer
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
             flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
+            placed=contents.placed,
         )
         for panel, part in zip(panels, contents.parts, strict=True)
     ]

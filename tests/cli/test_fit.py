@@ -99,8 +99,8 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
     options += (
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
         " --blend 500-900 --blend N-02=45-62.5%"
-        " --outputs step,flats --only N-01,*3 --k-factor 0.4 --chord 0.02 --roll-pitch 80 --dxf-entities lines"
-        " --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
+        " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
+        " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
         " --stock 1500x3000,2500x4000 --facet-height 0.3"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
@@ -128,6 +128,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "step_schema": "AP214",
         "outputs": ["step", "flats"],
         "only": ["N-01", "*3"],
+        "origin": "keep",
         "k_factor": 0.4,
         "chord": 0.02,
         "roll_pitch": 80.0,

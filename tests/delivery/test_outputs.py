@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cadpanel.brep.proof.inspection import inspect
+from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery import deliver as delivering
 from cadpanel.delivery import verify as verifying
 from cadpanel.delivery.folder import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT
@@ -73,6 +75,25 @@ def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
         for name in ("far", "near")
     )
     assert there - here == pytest.approx(np.broadcast_to(far, here.shape), abs=1e-6)
+
+
+def test_step_files_lie_on_the_map_if_that_is_asked_for(tmp_path: Path) -> None:
+    result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
+    on_the_map = replace(result, reference=replace(result.reference, origin=far))
+    report = delivering.deliver(on_the_map, tmp_path / "out", shop=ShopSettings(origin="keep"))
+    assert (report.origin.kept, report.origin.offset) == (True, far)
+    assert report.certificate.volume_error < 1e-11
+    assert verifying.verify(tmp_path / "out").holds
+    for name, shape in read_step_shapes(tmp_path / "out" / "panels.step"):
+        facts = inspect(name, shape)
+        assert tuple(facts.placed) == far
+        (panel,) = (panel for panel in report.panels if panel.name == name)
+        corners = np.reshape(panel.corners, (-1, 3))
+        assert np.linalg.norm(facts.vertices[:, None] - corners, axis=-1).min(axis=0).max() < 1e-9
+    path = tmp_path / "out" / "report.json"
+    path.write_text(path.read_text(encoding="utf-8").replace("800000000.0", "800000001.0"), encoding="utf-8")
+    failures = verifying.verify(tmp_path / "out").failures
+    assert "Panel 'N 1': its solid is placed 1 mm away from where it is expected." in failures
 
 
 def test_only_the_panels_that_are_asked_for_are_delivered_and_all_are_reported(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from cadpanel.errors import SettingsError
         ("dxf_name_length", 20.5, "must be a whole number"),
         ("dxf_entities", "splines", "drawn as polyline or lines"),
         ("dxf_contour_only", 1, "is yes or no"),
+        ("origin", "far", "the origin is local or kept"),
         ("outputs", "", "outputs are chosen by their names"),
         ("only", ("a", " "), "panels are chosen by their names"),
         ("stock", ((1500.0,),), "a sheet of the stock has two sides"),

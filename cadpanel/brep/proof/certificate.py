@@ -49,6 +49,7 @@ class ExpectedPanel:
         corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
         far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
         flat: what its flat pattern says; None to leave it alone.
+        placed: where the origin of its coordinates lies in both files, mm.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -59,6 +60,7 @@ class ExpectedPanel:
     corners: Array
     far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
     flat: ExpectedFlat | None = None
+    placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,6 +146,9 @@ def certify(
             volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
         if panel.name in skin_of:
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
+        for label, found in (("solid", solid_of), ("skin", skin_of)):
+            if panel.name in found:
+                _check_placed(panel, label, found[panel.name], failures)
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
             if panel.flat is not None:
@@ -251,6 +256,13 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
     }
     failures += [f"Panel '{panel.name}': its skin {problem}." for problem, present in problems.items() if present]
     return error
+
+
+def _check_placed(panel: ExpectedPanel, label: str, facts: ShapeFacts, failures: list[str]) -> None:
+    """The origin of its coordinates must lie where it is expected; a millimetre on a map is the last digit but six."""
+    apart = float(np.abs(facts.placed - panel.placed).max())
+    if not apart <= POSITION_LIMIT:
+        failures.append(f"Panel '{panel.name}': its {label} is placed {apart:.3g} mm away from where it is expected.")
 
 
 def _described(kinds: dict[str, int]) -> str:

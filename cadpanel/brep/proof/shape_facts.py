@@ -19,6 +19,7 @@ class ShapeFacts:
 
     Attributes:
         name: the product's name.
+        placed: (3,) where the origin of its coordinates lies in the file, mm; all else is told in its own coordinates.
         solids: number of solids in it.
         shells: number of shells in it.
         valid: whether the kernel's exact check passes.
@@ -37,6 +38,7 @@ class ShapeFacts:
     """
 
     name: str
+    placed: Array
     solids: int
     shells: int
     valid: bool

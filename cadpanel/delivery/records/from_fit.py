@@ -22,6 +22,7 @@ from cadpanel.delivery.records.report import (
 )
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.sheets import PanelSheet
+from cadpanel.delivery.shop_settings import Origin
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
@@ -49,9 +50,9 @@ def reference_record(reference: Reference) -> ReferenceModel:
     )
 
 
-def origin_record(reference: Reference) -> OriginModel:
-    """Where the fit's coordinates lie in the model's."""
-    return OriginModel(kept=not any(reference.origin), offset=reference.origin)
+def origin_record(reference: Reference, origin: Origin) -> OriginModel:
+    """Where the fit's coordinates lie in the model's, and which of them STEP files have."""
+    return OriginModel(kept=origin == "keep" or not any(reference.origin), offset=reference.origin)
 
 
 def _reading(settings: ReferenceSettings) -> dict[str, Setting]:

@@ -54,11 +54,11 @@ class ReferenceModel(Record):
 
 
 class OriginModel(Record):
-    """Where the coordinates of all files lie in the model's.
+    """Where the coordinates of this report and of local files lie in the model's.
 
     Attributes:
-        kept: whether they are the model's own.
-        offset: what has to be added to them, mm; whole metres.
+        kept: whether the STEP files have the model's own coordinates.
+        offset: what has to be added to local coordinates, mm; whole metres.
     """
 
     kept: bool = True

@@ -75,6 +75,7 @@ class SettingsModel(ComparisonSettingsModel):
         step_schema: of the STEP files.
         outputs: those that were asked for; None for all that need no asking.
         only: the panels that were asked for; all if empty.
+        origin: "keep" where STEP files lie where the model does.
         k_factor: where the sheet keeps its lengths, a share of the thickness from the inner face of bends.
         chord: how far arcs in drawings may lie from the exact contour, mm.
         roll_pitch: largest distance between rulings, mm.
@@ -93,6 +94,7 @@ class SettingsModel(ComparisonSettingsModel):
     step_schema: Literal["AP242", "AP214"]
     outputs: tuple[str, ...] | None = None
     only: tuple[str, ...] = ()
+    origin: Literal["local", "keep"] = "local"
     k_factor: NonNegative = 0.5
     chord: NonNegative = 0.01
     roll_pitch: NonNegative = 50.0

@@ -19,7 +19,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.outputs.step_files import write_solids
+from cadpanel.delivery.outputs.step_files import Place, write_solids
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.sheets import PanelSheet
@@ -84,7 +84,15 @@ def test_the_report_says_what_was_taken_for_what_and_the_user_may_override_it(
 def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, lip_step: Path, tmp_path: Path) -> None:
     answer = run("fit", lip_step, "--out", tmp_path / "out")
     assert answer.code == 0
-    for words in ("Largest corner gap, mm", "Hausdorff", "two-stage", "Certificate: 3 solids valid", "tmp", "Written"):
+    for words in (
+        "Largest corner gap, mm",
+        "Hausdorff",
+        "two-stage",
+        "Certificate: 3 solids valid",
+        "tmp",
+        "Written",
+        "4 drawings",
+    ):
         assert words in answer.out
     assert answer.err == ""
 
@@ -184,8 +192,8 @@ def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_s
 def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema) -> None:
-        write_solids(path, panels[:-1], title, schema)
+    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place) -> None:
+        write_solids(path, panels[:-1], title, schema, placed)
 
     monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")

@@ -19,6 +19,7 @@ from cadpanel.delivery.outputs.catalogue import chosen_outputs
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.delivery.source_date import source_date
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -53,7 +54,8 @@ def fit(
     Exit codes: 0 all is well; 1 it ran, but the tolerance, the stock or the proof does not hold; 2 refused.
     """
     began = time.perf_counter()
-    chosen_outputs(shop.outputs)  # refused before anything else is done
+    chosen_outputs(shop.outputs)  # refused before anything else is done, and so is a date that is none
+    source_date()
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
         report, shortfall = _run(reference, how, settings, Asked(sheet, shop), folder, shown, time_limit)
     if not quiet:

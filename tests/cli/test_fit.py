@@ -396,3 +396,15 @@ def test_what_cannot_be_delivered_is_refused_before_the_fit(
     answer = run("fit", lip_step, "--out", tmp_path / "out", *words.split())
     assert (answer.code, answer.err) == (2, f"{said}\n")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_date_that_is_none_is_refused_before_the_fit(
+    run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "today")
+    answer = run("fit", lip_step, "--out", tmp_path / "out")
+    assert (answer.code, answer.err) == (
+        2,
+        "SOURCE_DATE_EPOCH must be a number of seconds since 1970, not 'today'.\n",
+    )
+    assert list(tmp_path.iterdir()) == []

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import io
 import math
-import os
 import re
 import uuid
 from collections.abc import Iterable, Iterator
-from datetime import UTC, datetime
+from datetime import datetime
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,7 +21,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.drawing.entities import Contour, Entity, Line, Text
 from cadpanel.delivery.shop_settings import LAYERS, DxfEntities, ShopSettings
-from cadpanel.errors import SettingsError
+from cadpanel.delivery.source_date import source_date
 from cadpanel.geometry.biarcs import arc_circle
 
 MARK = b"999\r\ncadpanel\r\n"
@@ -31,7 +30,6 @@ _RELEASE, _MILLIMETRES = "R2000", 4
 _COLOURS = dict(zip(LAYERS, (7, 1, 8, 3, 5), strict=True))
 # Handles of entities; those of the frame are below, and the next free one is above.
 _FIRST_HANDLE, _NEXT_HANDLE = 0x1000, 0x10000000
-_EPOCH = "SOURCE_DATE_EPOCH"
 _DATES = re.compile(r"(\$TD(?:U?CREATE|U?UPDATE)\n 40\n)[^\n]*")
 _GUIDS = re.compile(r"(\$(?:FINGERPRINT|VERSION)GUID\n  2\n)[^\n]*")
 _WRITTEN = re.compile(r"( @ )\d{4}-\d\d-\d\dT[^\n]*")
@@ -56,7 +54,7 @@ def frame_of(shop: ShopSettings) -> Frame:
         SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
     """
     layers = {shop.layer(role): _COLOURS[role] for role in reversed(LAYERS)}
-    return _frame(tuple(layers.items()), _date())
+    return _frame(tuple(layers.items()), source_date())
 
 
 def dxf_bytes(drawing: Iterable[Entity], frame: Frame, entities: DxfEntities) -> bytes:
@@ -71,14 +69,6 @@ def dxf_bytes(drawing: Iterable[Entity], frame: Frame, entities: DxfEntities) ->
             handle += 1
     text = f"{frame.head}{''.join(found)}{frame.tail}".replace("\n", "\r\n")
     return MARK + text.encode("cp1252", errors="dxfreplace")
-
-
-def _date() -> datetime:
-    said = os.environ.get(_EPOCH, "0")
-    try:
-        return datetime.fromtimestamp(int(said), UTC)
-    except (ValueError, OverflowError, OSError) as error:
-        raise SettingsError(f"{_EPOCH} must be a number of seconds since 1970, not '{said}'") from error
 
 
 @lru_cache(maxsize=8)

@@ -84,12 +84,21 @@ def _totals(contents: Contents) -> Iterator[Row]:
     panels = contents.records
     yield _sum("all panels", "", panels)
     thickness = f"{contents.sheet.thickness:g}"
-    for what, key in (
+    groups: list[tuple[str, Callable[[PanelModel], str]]] = [
         ("feature", lambda panel: panel.feature),
         ("thickness mm", lambda _: thickness),
-        ("stock", lambda panel: _stock(panel.blank)),
-    ):
+    ]
+    if contents.shop.stock:
+        groups.append(("stock", lambda panel: _stock(panel.blank)))
+    for what, key in groups:
         yield from (_sum(what, value, own) for value, own in _grouped(panels, key).items())
+    yield from _totals_of_bends(panels)
+
+
+def _totals_of_bends(panels: Sequence[PanelModel]) -> Iterator[Row]:
+    """How many bends, how far and in how many strokes, by their mean inner radius; nothing where nothing is bent."""
+    if not any(panel.bends for panel in panels):
+        return
     yield ()
     yield ("bends by inner radius", "mm", "bends", "sum of sweeps deg", "press hits")
     bends = [bend for panel in panels for bend in panel.bends]

@@ -11,7 +11,6 @@ from cadpanel.delivery.drawing.dxf import MARK, dxf_bytes, frame_of
 from cadpanel.delivery.drawing.entities import Contour, Line, Text
 from cadpanel.delivery.outputs.flat_dxf import FLAT, FlatDxf
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.errors import SettingsError
 
 DRAWING = (
     Contour("CUT", np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.25], [100.0, 50.0, 0.0], [0.0, 50.0, -0.1]])),
@@ -79,13 +78,6 @@ def test_the_same_drawing_gives_the_same_bytes_and_other_bytes_at_another_date(m
     assert dated != one
     written = float(dated.partition(b"$TDCREATE\r\n 40\r\n")[2].split(b"\r\n")[0])
     assert written == pytest.approx(2440587.5 + 1700000000 / 86400, abs=1.0)
-
-
-@pytest.mark.parametrize("said", ["yesterday", "", "1e99", "99999999999999999999"])
-def test_a_date_that_is_none_is_refused(monkeypatch, said):
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", said)
-    with pytest.raises(SettingsError, match="SOURCE_DATE_EPOCH must be a number of seconds"):
-        frame_of(ShopSettings())
 
 
 def test_the_mark_is_the_one_by_which_folders_are_known():

@@ -89,3 +89,11 @@ def test_a_panel_without_neighbours_has_no_gap():
 @pytest.mark.parametrize(("name", "strip"), [("NW-01", "NW"), ("S1-R02-C05", "S1-R02"), ("wall", ""), ("N 1", "")])
 def test_a_strip_is_what_stands_before_the_number(name, strip):
     assert strip_of(name) == strip
+
+
+def test_what_was_not_asked_for_and_what_is_not_bent_has_no_totals():
+    told = contents(ShopSettings())
+    flat = replace(told, records=tuple(record.model_copy(update={"bends": ()}) for record in told.records))
+    kinds = [{row[0] for row in tables(one)[1] if row} for one in (told, flat)]
+    assert kinds[0] - kinds[1] == {"bends by inner radius", ""}
+    assert kinds[1] == {"totals of", "all panels", "feature", "thickness mm"}

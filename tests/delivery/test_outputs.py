@@ -13,7 +13,7 @@ from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery import deliver as delivering
 from cadpanel.delivery import verify as verifying
 from cadpanel.delivery.folder import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT
-from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -41,7 +41,7 @@ def test_outputs_have_names_and_files_of_their_own() -> None:
     assert {REPORT, COMPARISON, *files} == OWN_FILES | OWN_FOLDERS.keys()
 
 
-@pytest.mark.parametrize("asked", [None, ("step",), ("flats",)])
+@pytest.mark.parametrize("asked", [None, ("step",), ("flats",), ("xlsx", "schedule")])
 def test_a_delivery_holds_the_report_what_is_always_there_and_what_was_asked_for(
     tmp_path: Path, asked: tuple[str, ...] | None
 ) -> None:
@@ -128,7 +128,8 @@ def test_a_new_output_is_written_told_of_and_demanded(tmp_path: Path, monkeypatc
     )
     names = tmp_path / "out" / "names.txt"
     assert names.read_text(encoding="utf-8").splitlines() == ["arrays 2.5", "N 1", "N 2", "N 3"]
-    assert ("write", len(more), len(more)) in told
+    written = sum(output.always or output.unasked for output in more)
+    assert ("write", written, written) in told
     assert verifying.verify(tmp_path / "out").holds
     names.unlink()
     with pytest.raises(DeliveryError, match=r"holds no names\.txt"):
@@ -145,3 +146,13 @@ def test_an_output_that_is_not_always_there_is_neither_written_nor_demanded(
     delivering.deliver(fitted(), tmp_path / "out")
     assert not (tmp_path / "out" / "names.txt").exists()
     assert verifying.verify(tmp_path / "out").holds
+
+
+def test_an_output_whose_package_is_missing_is_refused_with_how_to_install_it() -> None:
+    asked = NameList()
+    asked.always, asked.needs = False, "no_such_package"
+    with pytest.raises(
+        SettingsError, match=r"'names' needs no_such_package: install it with pip install 'cadpanel\[nam"
+    ):
+        chosen_outputs(("names",), [asked])
+    assert chosen_outputs(("step",), [asked]) == ()

@@ -39,7 +39,7 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
         if how.way not in REMEDIES:
             raise
         raise error.with_remedy(REMEDIES[how.way]) from error
-    return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
+    return replace(reference, notes=(*reference.notes, *raw.notes), settings=how, origin=raw.origin)
 
 
 def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None) -> RawReference:

@@ -168,6 +168,7 @@ def deliver(
     out: str | Path,
     *,
     thickness: float = 3.0,
+    joint: float = 0.0,
     skin_side: SkinSide = "outer",
     schema: Schema = "AP242",
     overwrite: bool = False,
@@ -179,6 +180,7 @@ def deliver(
         result: the fitted panels.
         out: the folder; an existing one is refused unless `overwrite` is set.
         thickness: of the sheet, mm.
+        joint: clear width between neighbouring sheets, mm.
         skin_side: "outer": the skin is the sheet's outer face; "inner": its inner one.
         schema: of the STEP files, "AP242" or "AP214".
         overwrite: replace an existing delivery.
@@ -188,7 +190,7 @@ def deliver(
         What report.json holds.
 
     Raises:
-        SettingsError: the thickness, side or schema is none.
+        SettingsError: the thickness, joint, side or schema is none.
         PanelError: a panel cannot be built.
         DeliveryError: the folder is refused or cannot be written.
         ProofError: what was written is not what was promised; nothing is left.
@@ -196,51 +198,57 @@ def deliver(
     from cadpanel.delivery.deliver import deliver as deliver_result
     from cadpanel.delivery.settings import SheetSettings
 
-    sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
+    sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
     return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
 
 
 def to_cadquery(
-    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
 ) -> cadquery.Workplane:
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
     Args:
         panels: a result, or one of its shapes.
         thickness: of the sheet, mm.
+        joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
 
     Raises:
         PanelError: a panel cannot be built.
-        SettingsError: the thickness or side is none.
+        SettingsError: the thickness, joint or side is none.
     """
     from cadpanel.brep.building.adapters import to_cadquery_shape, to_workplane
 
-    solids = [panel.solid for panel in _build(panels, thickness, skin_side)]
+    solids = [panel.solid for panel in _build(panels, thickness, joint, skin_side)]
     return to_workplane(solids[0]).newObject([to_cadquery_shape(solid) for solid in solids])
 
 
 @overload
-def to_build123d(panels: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Part: ...
-@overload
-def to_build123d(panels: FitResult, *, thickness: float = 3.0, skin_side: SkinSide = "outer") -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer"
+    panels: Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+) -> build123d.Part: ...
+@overload
+def to_build123d(
+    panels: FitResult, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+) -> build123d.Compound: ...
+def to_build123d(
+    panels: FitResult | Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
 ) -> build123d.Compound:
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
     Args:
         panels: a result, or one of its shapes.
         thickness: of the sheet, mm.
+        joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
 
     Raises:
         PanelError: a panel cannot be built.
-        SettingsError: the thickness or side is none.
+        SettingsError: the thickness, joint or side is none.
     """
     from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
-    built = _build(panels, thickness, skin_side)
+    built = _build(panels, thickness, joint, skin_side)
     if isinstance(panels, FitResult):
         return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
     return to_build123d_part(built[0].solid, panels.name)
@@ -251,6 +259,7 @@ def write_step(
     path: str | Path,
     *,
     thickness: float = 3.0,
+    joint: float = 0.0,
     skin_side: SkinSide = "outer",
     skins: bool = False,
     schema: Schema = "AP242",
@@ -261,6 +270,7 @@ def write_step(
         panels: a result, or one of its shapes.
         path: the file; one that is there is replaced once the new one is complete.
         thickness: of the sheet, mm.
+        joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
         skins: write the skins as open shells instead of the solids.
         schema: "AP242" or "AP214".
@@ -268,22 +278,24 @@ def write_step(
     Raises:
         PanelError: a panel cannot be built.
         DeliveryError: the file cannot be written.
-        SettingsError: the thickness, side or schema is none.
+        SettingsError: the thickness, joint, side or schema is none.
     """
     from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 
-    built = _build(panels, thickness, skin_side, schema)
+    built = _build(panels, thickness, joint, skin_side, schema)
     (write_skins if skins else write_solids)(Path(path), built, _title(panels), schema)
 
 
 def _build(
-    panels: FitResult | Panel, thickness: float, skin_side: SkinSide, schema: Schema = "AP242"
+    panels: FitResult | Panel, thickness: float, joint: float, skin_side: SkinSide, schema: Schema = "AP242"
 ) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.sheets import build_panels
 
-    sheet = SheetSettings(thickness=thickness, skin_side=skin_side, schema=schema)
-    return build_panels(panels.shapes if isinstance(panels, FitResult) else [panels], sheet)
+    sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
+    if isinstance(panels, FitResult):
+        return build_panels(panels.shapes, sheet, panels.reference.seams).panels
+    return build_panels([panels], sheet).panels
 
 
 def _title(panels: FitResult | Panel) -> str:

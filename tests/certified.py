@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from cadpanel.brep.building.sheet import build_skin, build_solid
-from cadpanel.brep.proof.certificate import ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.proof.certificate import certify
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
 from cadpanel.brep.step.file import write_step
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape

@@ -33,10 +33,11 @@ Tree = dict[str, "Tree"] | list["Tree"] | float | int | str | bool | None
 def delivered(fixture: str) -> Tree:
     """What report.json would say of the panels, seams and the whole of a fixture under the default settings."""
     result = fit(read_reference(ROOT / "fixtures" / f"{fixture}.step"))
-    built = build_panels(result.shapes, SheetSettings())
+    built = build_panels(result.shapes, SheetSettings(), result.reference.seams)
+    seams = seam_records(result.reference, result.measures, built.joints)
     records = {
         "panels": [panel.model_dump(mode="json") for panel in panel_records(result, built)],
-        "seams": [seam.model_dump(mode="json") for seam in seam_records(result.reference, result.measures)],
+        "seams": [seam.model_dump(mode="json") for seam in seams],
         "summary": summary(result.measures, result.local, result.settings).model_dump(mode="json"),
         "baselines": baselines_record(result).model_dump(mode="json"),
     }

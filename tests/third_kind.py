@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.errors import PanelError
 from cadpanel.features.numbers import Number
 from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
@@ -18,8 +19,9 @@ from cadpanel.features.rulings import Points, Walk
 from cadpanel.fitting.start.frames import Frames, Given
 from cadpanel.fitting.start.polygons import start_polygons
 from cadpanel.geometry import patches
+from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.frames import point_velocity
-from cadpanel.geometry.panel import Straightened
+from cadpanel.geometry.panel import CutPlane, PanelEdge, Straightened
 from cadpanel.geometry.polygon_checks import check_polygon
 from cadpanel.geometry.shape import PolygonShape
 
@@ -116,6 +118,15 @@ class RegularShape:
 
     def cuts(self) -> tuple[Array, Array]:
         return self.as_polygon().cuts()
+
+    def edge(self, edge: str) -> PanelEdge:
+        return self.as_polygon().edge(edge)
+
+    def arcs(self) -> CurvePieces:
+        return self.as_polygon().arcs()
+
+    def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> RegularShape:
+        raise PanelError(self.name, f"cut along {sorted(planes)} to {depth:g} mm it is not regular: use a polygon.")
 
     def area(self) -> float:
         reach = np.linalg.norm(self.outline[0] - self.outline.mean(axis=0))

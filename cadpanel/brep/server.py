@@ -63,6 +63,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "facts": lambda request, _: INSPECTOR.facts(request.path, cast(Sequence[int], request.argument)),
     "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),
     "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
+    "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
     "close": lambda _request, _: INSPECTOR.close(),
 }
 """What can be asked for."""

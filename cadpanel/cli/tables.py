@@ -134,9 +134,17 @@ def print_certificate(certificate: CertificateModel, heading: str) -> None:
         f"{counted(certificate.solids, 'solid')} {'valid' if certificate.valid else 'NOT valid'} ({kinds}), "
         f"names {'kept' if certificate.names_kept else 'NOT kept'}, "
         f"tangent to {certificate.max_tangency_error:.1g} rad, volumes to {certificate.volume_error:.1g}, "
-        f"seams open by at most {length(certificate.max_seam_gap)} mm in the files."
+        f"seams open by at most {length(certificate.max_seam_gap)} mm in the files{_joints(certificate)}."
     )
     console().print(Text(f"{heading}: {said}"))
+
+
+def _joints(certificate: CertificateModel) -> str:
+    """What is said of the joints between sheets; nothing where none was proved."""
+    if certificate.clear is None or certificate.overlap is None:
+        return ""
+    least, largest = (length(width) for width in (certificate.clear.least, certificate.clear.largest))
+    return f", joints {least} to {largest} mm wide, no two solids share volume"
 
 
 def counted(count: int, thing: str) -> str:

@@ -78,26 +78,28 @@ def fill_delivery(
         baselines = baselines_record(result)
         tell("compare", 1, 1)
         compared_at = time.perf_counter()
-        built = build_panels(result.shapes, sheet, tell)
-        panels, seams = panel_records(result, built), seam_records(result.reference, result.measures)
+        built = build_panels(result.shapes, sheet, result.reference.seams, tell)
+        panels = panel_records(result, built)
+        seams = seam_records(result.reference, result.measures, built.joints)
         built_at = time.perf_counter()
-        delivery = Delivery(panels=built, title=Path(result.reference.source).stem, sheet=sheet)
+        delivery = Delivery(panels=built.panels, title=Path(result.reference.source).stem, sheet=sheet)
         _write(folder, delivery, tell, helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        certificate = prove(folder, panels, seams, sheet.thickness, sheet.skin_side, helper)
+        settings = settings_record(result.reference, result.settings, sheet)
+        proof = prove(folder, panels, seams, settings, helper)
     verified_at = time.perf_counter()
-    _demand(certificate)
+    _demand(proof.certificate)
     report = ReportModel(
         reference=reference_record(result.reference),
-        settings=settings_record(result.reference, result.settings, sheet),
+        settings=settings,
         solve=solve_record(result),
         panels=panels,
-        seams=seams,
+        seams=proof.seams,
         features=dict(Counter(panel.feature for panel in panels)),
         summary=summary(result.measures, result.local, result.settings),
         baselines=baselines,
-        certificate=certificate,
+        certificate=proof.certificate,
         timing=TimingModel(
             read=seconds_to_read,
             fit=result.seconds + compared_at - began,

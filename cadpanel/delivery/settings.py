@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET
+from cadpanel.geometry.limits import THICKEST_SHEET, THINNEST_SHEET, WIDEST_JOINT
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.setting import Option, Range, check_ranges, setting
 
@@ -19,6 +19,7 @@ class SheetSettings:
 
     Attributes:
         thickness: of the sheet, mm.
+        joint: clear width between any two neighbouring sheets, mm; the fitted skins meet in its middle.
         skin_side: "outer": the skin is the outer face and the sheet lies inside; "inner": the other way round.
         schema: of the STEP files, "AP242" or "AP214".
     """
@@ -27,6 +28,11 @@ class SheetSettings:
         3.0,
         within=Range(what="sheet thickness", least=THINNEST_SHEET, most=THICKEST_SHEET, unit=" mm"),
         option=Option(metavar="MM", help="Of the sheet."),
+    )
+    joint: float = setting(
+        0.0,
+        within=Range(what="joint", least=0.0, most=WIDEST_JOINT, unit=" mm"),
+        option=Option(metavar="MM", help="Clear width between neighbouring sheets, along the whole seam."),
     )
     skin_side: SkinSide = setting("outer", option=Option(help="Is the fitted skin the sheet's outer or inner face?"))
     schema: Schema = setting("AP242", option=Option(help="Of the STEP files."))

@@ -8,11 +8,18 @@ from dataclasses import dataclass
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.geometry.panel import Panel
+from cadpanel.errors import PanelError
+from cadpanel.geometry.edge_planes import SeamEdges
+from cadpanel.geometry.joint_widths import widest_joint
+from cadpanel.geometry.joints import Joint, Jointed, cut_to_seams
+from cadpanel.geometry.panel import Panel, Straightened
+from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.geometry.volume import sheet_volume
+from cadpanel.reference.model import Seam
 
 # What is going on, how much of it is done, and of how much.
 Progress = Callable[[str, int, int], None]
+FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,16 +27,19 @@ class PanelSheet:
     """A panel's sheet as an exact solid, and the formula's numbers to hold it against.
 
     Attributes:
-        shape: the panel as it is built: a cone that is all but a cylinder has become one.
+        shape: the panel as it is built: a cone that is all but a cylinder has become one, and it is cut back from its
+            seams by half a joint.
+        fitted: the same before it was cut back.
         solid: the sheet.
         skin: the open shell that approximates the reference.
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
-        moved: how far the farthest corner lies from where the fit had it, mm.
+        moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
         notes: what the fabricator should know, one sentence each.
     """
 
     shape: Panel
+    fitted: Panel
     solid: Solid
     skin: Shell
     area: float
@@ -38,41 +48,83 @@ class PanelSheet:
     notes: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Built:
+    """All sheets of a fit.
+
+    Attributes:
+        panels: one sheet a panel.
+        joints: of each seam, where it stands.
+    """
+
+    panels: tuple[PanelSheet, ...]
+    joints: tuple[Joint, ...]
+
+
 def build_panels(
-    shapes: Sequence[Panel], sheet: SheetSettings, progress: Progress | None = None
-) -> tuple[PanelSheet, ...]:
-    """Build the sheet and the skin of every panel.
+    shapes: Sequence[Panel], sheet: SheetSettings, seams: Sequence[Seam] = (), progress: Progress | None = None
+) -> Built:
+    """Build the sheet and the skin of every panel, cut back from the seams.
 
     Raises:
         PanelError: a panel cannot be built; the message names it, the reason and the remedy.
     """
     tell = progress or say_nothing
-    built: list[PanelSheet] = []
     tell("build", 0, len(shapes))
-    for shape in shapes:
-        built.append(_build(shape, sheet))
-        tell("build", len(built), len(shapes))
-    return tuple(built)
+    straight = [shape.straightened() for shape in shapes]
+    fitted = [one.shape for one in straight]
+    edges = seam_edges(shapes, seams)
+    try:
+        jointed = cut_to_seams(fitted, edges, sheet.joint, sheet_depth(sheet.thickness, sheet.skin_side))
+        panels = _build_all(straight, jointed, sheet, tell)
+    except PanelError:
+        narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side)
+        if narrow is None:
+            raise
+        raise PanelError(narrow.panel, narrow.reason) from None
+    return Built(panels=panels, joints=jointed.joints)
+
+
+def seam_edges(shapes: Sequence[Panel], seams: Sequence[Seam]) -> list[SeamEdges]:
+    """The seams of a reference by the names of edges that panels know."""
+
+    def edge(panel: int, number: int) -> str:
+        return FOUR_EDGES[number] if shapes[panel].four_sided else f"edge {number}"
+
+    return [
+        SeamEdges(panels=seam.panels, edges=(edge(seam.panels[0], seam.edges[0]), edge(seam.panels[1], seam.edges[1])))
+        for seam in seams
+    ]
 
 
 def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
-def _build(shape: Panel, sheet: SheetSettings) -> PanelSheet:
+def _build_all(
+    straight: Sequence[Straightened[Panel]], jointed: Jointed, sheet: SheetSettings, tell: Progress
+) -> tuple[PanelSheet, ...]:
+    built: list[PanelSheet] = []
+    for one, shape in zip(straight, jointed.shapes, strict=True):
+        built.append(_build(one, shape, sheet))
+        tell("build", len(built), len(straight))
+    return tuple(built)
+
+
+def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) -> PanelSheet:
     built = build_panel(shape, sheet.thickness, sheet.skin_side)
-    straight = built.straightened
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
         for index in straight.patches
     )
     return PanelSheet(
-        shape=straight.shape,
+        shape=shape,
+        fitted=straight.shape,
         solid=built.solid,
         skin=built.skin,
-        area=straight.shape.area(),
-        volume=sheet_volume(straight.shape, sheet.thickness, sheet.skin_side),
+        area=shape.area(),
+        volume=sheet_volume(shape, sheet.thickness, sheet.skin_side),
         moved=straight.largest_move,
         notes=notes,
     )

@@ -9,16 +9,26 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, certify
+from cadpanel.brep.proof.certificate import Certificate, certify
+from cadpanel.brep.proof.clearances import Clear
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.catalogue import OUTPUTS
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.patches import PlanePatchModel
-from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, read_report
+from cadpanel.delivery.records.report import (
+    CertificateModel,
+    ClearModel,
+    PanelModel,
+    ReportModel,
+    SeamModel,
+    read_report,
+)
+from cadpanel.delivery.records.settings import SettingsModel
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.sheet_checks import sheet_depth
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,33 +64,44 @@ def verify(folder: str | Path) -> Verification:
         if not (place / name).is_file():
             raise DeliveryError(f"'{folder}' holds no {name}, so it is no whole delivery: write it again.")
     report = read_report(place / REPORT)
-    certificate = prove(place, report.panels, report.seams, report.settings.thickness, report.settings.skin_side)
+    certificate = prove(place, report.panels, report.seams, report.settings).certificate
     failures = (*certificate.failures, *check_report(report, certificate))
     return Verification(report=report, certificate=certificate, failures=failures)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof:
+    """What the files show.
+
+    Attributes:
+        certificate: of all of them.
+        seams: as they were stated, and with the clear width of their joints, as it was measured.
+    """
+
+    certificate: CertificateModel
+    seams: tuple[SeamModel, ...]
 
 
 def prove(
     folder: Path,
     panels: Sequence[PanelModel],
     seams: Sequence[SeamModel],
-    thickness: float,
-    skin_side: SkinSide,
+    settings: SettingsModel,
     helper: Helper | None = None,
-) -> CertificateModel:
+) -> Proof:
     """What reading panels.step and skins.step in a folder back shows.
 
     Args:
         folder: that holds the files.
         panels: as the report states them.
         seams: as the report states them.
-        thickness: of the sheet, mm.
-        skin_side: "outer" where the sheet lies behind the skin's normals.
+        settings: with the sheet's thickness and side, and the joint.
         helper: a second interpreter that is running already.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
-    depth = -thickness if skin_side == "outer" else thickness
+    depth = sheet_depth(settings.thickness, settings.skin_side)
     moved = {panel.name: panel.moved for panel in panels}
     expected = [
         ExpectedPanel(
@@ -89,14 +110,44 @@ def prove(
             kinds=tuple(patch.kind for patch in panel.patches),
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
+            fitted=_fitted(panel),
         )
         for panel in panels
     ]
-    gaps = [
-        ExpectedSeam(panels=seam.panels, edges=seam.edges, gap=seam.max_seam_gap + sum(moved[n] for n in seam.panels))
+    wanted = [
+        ExpectedSeam(
+            panels=seam.panels,
+            edges=seam.edges,
+            gap=seam.max_seam_gap + sum(moved[name] for name in seam.panels),
+            across=None if seam.plane is None else np.array(seam.plane.normal),
+            clear=None if seam.clear is None else (seam.clear.least, seam.clear.largest),
+        )
         for seam in seams
     ]
-    return _record(certify(folder / PANELS, folder / SKINS, expected, gaps, helper))
+    certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, settings.joint)
+    return Proof(certificate=_record(certificate), seams=_with_joints(seams, certificate))
+
+
+def _with_joints(seams: Sequence[SeamModel], certificate: Certificate) -> tuple[SeamModel, ...]:
+    if not certificate.clear:
+        return tuple(seams)
+    return tuple(
+        seam if clear is None else seam.model_copy(update={"clear": _clear([clear])})
+        for seam, clear in zip(seams, certificate.clear, strict=True)
+    )
+
+
+def _clear(found: Sequence[Clear]) -> ClearModel | None:
+    if not found:
+        return None
+    return ClearModel(least=min(one.least for one in found), largest=max(one.largest for one in found))
+
+
+def _fitted(panel: PanelModel) -> Fitted | None:
+    if panel.fitted is None:
+        return None
+    cuts = [(np.array(cut.normal) * cut.offset, cut.normal) for cut in panel.fitted.cuts]
+    return Fitted(corners=np.array(panel.fitted.corners), cuts=np.array(cuts).reshape(-1, 2, 3))
 
 
 def _far_planes(panel: PanelModel, depth: float) -> Array:
@@ -118,5 +169,7 @@ def _record(certificate: Certificate) -> CertificateModel:
         volume_error=certificate.volume_error,
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
+        clear=_clear([one for one in certificate.clear if one is not None]),
+        overlap=certificate.overlap,
         failures=certificate.failures,
     )

@@ -10,12 +10,14 @@ carry one to the other, and with half angle 0 (eccentricity 0) they are the iden
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.vectors import cross
 
 
@@ -217,4 +219,37 @@ def elliptic_section(frame: AxisFrame, cut: ConeCut) -> EllipticSection:
         sense=sense,
         mean_height=to_height * (cut.offset / cut.rise - slope * shift),
         height_swing=to_height * slope * stretch,
+    )
+
+
+def chain_arcs(rulings: tuple[Array, Array, Array], patches: Sequence[Patch], cuts: tuple[Array, Array]) -> CurvePieces:
+    """The arcs in which the planes that cut a chain's ends meet its round patches, patch by patch.
+
+    Args:
+        rulings: points, directions and normals (k + 1, 3).
+        patches: the k patches.
+        cuts: points and normals (e, 3).
+
+    Raises:
+        ValueError: if a section is a parabola or hyperbola.
+    """
+    points, directions, normals = rulings
+    frames = [
+        axis_frame(points[index], directions[index], normals[index], patch)
+        for index, patch in enumerate(patches)
+        if isinstance(patch, ConePatch)
+    ]
+    planes = list(zip(*cuts, strict=True))
+    return as_pieces([elliptic_section(frame, cut_cone(frame, *plane)) for frame in frames for plane in planes])
+
+
+def as_pieces(sections: Sequence[EllipticSection]) -> CurvePieces:
+    """Arcs as one table."""
+    return CurvePieces(
+        centers=np.array([one.center for one in sections]).reshape(-1, 3),
+        cosine_axes=np.array([one.cosine_axis for one in sections]).reshape(-1, 3),
+        sine_axes=np.array([one.sine_axis for one in sections]).reshape(-1, 3),
+        starts=np.array([one.start for one in sections], dtype=np.float64),
+        stops=np.array([one.stop for one in sections], dtype=np.float64),
+        arcs=np.ones(len(sections), dtype=bool),
     )

@@ -3,37 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains
+from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.widest_place import widest
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CurvePieces:
-    """n pieces center + cos(w) * cosine_axis + sin(w) * sine_axis for arcs, center + w * cosine_axis for segments.
-
-    Attributes:
-        centers: (n, 3) mm; a segment's start.
-        cosine_axes: (n, 3); a segment's whole span.
-        sine_axes: (n, 3); zero for a segment.
-        starts: (n,) least parameter; 0 for a segment.
-        stops: (n,) greatest parameter; 1 for a segment.
-        arcs: (n,) whether it is an arc.
-    """
-
-    centers: Array
-    cosine_axes: Array
-    sine_axes: Array
-    starts: Array
-    stops: Array
-    arcs: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]
-
-    def __len__(self) -> int:
-        return len(self.centers)
 
 
 def _stacked(chains: Sequence[CurvePieces]) -> CurvePieces:

@@ -6,3 +6,5 @@ SMALLEST_LENGTH = 0.1
 """Shortest edge: along a generatrix, across a flange, along an arc."""
 LARGEST_COORDINATE = 1e7
 """Farthest corner from the origin; beyond it the CAD kernel's own checks at 1e-7 mm lose their digits."""
+WIDEST_JOINT = 1000.0
+"""Widest joint between two sheets; no facade has one of a metre."""

@@ -6,13 +6,54 @@ kernel's faces or the rows of a record, has one entry for each class.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Generic, Protocol, Self, TypeVar, runtime_checkable
 
+import numpy as np
+
 from cadpanel.arrays import Array
+from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.patches import Patch
 
 Shape = TypeVar("Shape", bound="Panel")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutPlane:
+    """A plane in which a wall of a sheet stands.
+
+    Attributes:
+        point: (3,) on it, mm.
+        normal: (3,) unit, out of the panel.
+    """
+
+    point: Array
+    normal: Array
+
+    def beyond(self, points: Array) -> Array:
+        """How far points (..., 3) lie beyond it, mm (...)."""
+        return np.asarray((points - self.point) @ self.normal)
+
+    def moved(self, distance: float) -> CutPlane:
+        """The parallel plane that many mm farther out."""
+        return replace(self, point=self.point + distance * self.normal)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PanelEdge:
+    """One edge of a panel's skin, and which way it goes on beyond it.
+
+    Attributes:
+        corners: (m, 3) along it, mm.
+        outward: (3,) unit normal of the plane in which the fit has cut it, out of the panel.
+        normal: (3,) the skin's unit normal along it, None where the edge bends with the skin: then the cut plane is the
+            fit's, else the edge is straight and any plane through it will do.
+    """
+
+    corners: Array
+    outward: Array
+    normal: Array | None
 
 
 class Panel(Protocol):
@@ -58,6 +99,30 @@ class Panel(Protocol):
 
     def offset(self, distance: float) -> Self:
         """The parallel skin at `distance` mm outwards (negative: inwards), on the other face of a sheet."""
+        ...
+
+    def edge(self, edge: str) -> PanelEdge:
+        """One edge: "end 0", "end 1", "side 0", "side 1", or "edge 0" and so on.
+
+        Raises:
+            ValueError: the panel has no such edge.
+        """
+        ...
+
+    def arcs(self) -> CurvePieces:
+        """The bent pieces of its outline; all others run straight from corner to corner."""
+        ...
+
+    def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> Self:
+        """The panel with the walls of its sheet in these planes, edge by edge; the other walls stay as they are.
+
+        Args:
+            planes: by edge.
+            depth: the sheet's other face is `offset(depth)`, mm.
+
+        Raises:
+            PanelError: nothing is left of it.
+        """
         ...
 
     def straightened(self) -> Straightened[Self]:
@@ -121,11 +186,16 @@ class Chain(Protocol):
     @property
     def cut_normals(self) -> Array: ...  # noqa: D102
 
+    @property
+    def side_leans(self) -> Array: ...  # noqa: D102
+
     def corners(self) -> Array: ...  # noqa: D102
 
     def binormals(self) -> Array: ...  # noqa: D102
 
     def rewalked(self, points: Array, directions: Array, normals: Array, patches: tuple[Patch, ...]) -> Self: ...  # noqa: D102
+
+    def trimmed(self, cut_points: Array, cut_normals: Array, side_leans: Array) -> Self: ...  # noqa: D102
 
 
 class Outlined(Protocol):

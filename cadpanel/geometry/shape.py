@@ -6,15 +6,20 @@ measures; it knows nothing of unknowns, samples or CAD kernels.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.geometry.chain_checks import check_chain, check_chain_sheet
-from cadpanel.geometry.panel import Straightened
+from cadpanel.geometry.chain_cutting import cut_chain
+from cadpanel.geometry.cone_sections import chain_arcs
+from cadpanel.geometry.curve_pieces import CurvePieces, segments
+from cadpanel.geometry.panel import CutPlane, PanelEdge, Straightened
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
+from cadpanel.geometry.polygon_cutting import cut_polygon
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
 from cadpanel.geometry.vectors import cross, unit
 from cadpanel.geometry.volume import patch_areas
@@ -37,6 +42,8 @@ class PanelShape:
         patches: the k patches in the order of the walk.
         cut_points: (2, 3) a point on the cut plane of end 0 and end 1, mm.
         cut_normals: (2, 3) unit normals of the cut planes, both with a positive component along t.
+        side_leans: (2,) by how much the wall at either side leans along b for one mm along n; 0 where it stands square
+            to the sheet, and at the side of a round patch.
     """
 
     name: str
@@ -47,6 +54,7 @@ class PanelShape:
     patches: tuple[Patch, ...]
     cut_points: Array
     cut_normals: Array
+    side_leans: Array = field(default_factory=lambda: np.zeros(2))
 
     def corners(self) -> Array:
         """(2, k + 1, 3) where each ruling pierces the cut plane of end 0 and of end 1, mm."""
@@ -71,13 +79,16 @@ class PanelShape:
     def offset(self, distance: float) -> PanelShape:
         """The parallel skin at `distance` mm along n (negative: inwards), cut by the same two planes.
 
-        It has the same rulings' directions and the same half angles; only the normal radii change (exactly).
+        It has the same rulings' directions and the same half angles; only the normal radii change (exactly). A side
+        whose wall leans goes with it.
         """
         patches = tuple(
             replace(patch, radius=patch.radius + distance) if isinstance(patch, ConePatch) else patch
             for patch in self.patches
         )
-        return replace(self, points=self.points + distance * self.normals, patches=patches)
+        ways = self.normals.copy()
+        ways[[0, -1]] += self.side_leans[:, None] * self.binormals()[[0, -1]]
+        return replace(self, points=self.points + distance * ways, patches=patches)
 
     @property
     def four_sided(self) -> bool:
@@ -87,6 +98,29 @@ class PanelShape:
     def rewalked(self, points: Array, directions: Array, normals: Array, patches: tuple[Patch, ...]) -> PanelShape:
         """The same panel along other rulings, over other patches."""
         return replace(self, points=points, directions=directions, normals=normals, patches=patches)
+
+    def trimmed(self, cut_points: Array, cut_normals: Array, side_leans: Array) -> PanelShape:
+        """The same walk between other cuts and side walls."""
+        return replace(self, cut_points=cut_points, cut_normals=cut_normals, side_leans=side_leans)
+
+    def edge(self, edge: str) -> PanelEdge:
+        """See `Panel.edge`; a side is straight, an end is where all patches are flat."""
+        corners = edge_corners(self.corners(), edge)
+        place = int(edge[-1])
+        outward = 1.0 if place else -1.0
+        if edge.startswith("end"):
+            flat = all(isinstance(patch, PlanePatch) for patch in self.patches)
+            normal = self.normals[0] if flat else None
+            return PanelEdge(corners=corners, outward=outward * self.cut_normals[place], normal=normal)
+        return PanelEdge(corners=corners, outward=outward * self.binormals()[-place], normal=self.normals[-place])
+
+    def arcs(self) -> CurvePieces:
+        """See `Panel.arcs`: where the cut planes meet the cones."""
+        return chain_arcs(self.rulings(), self.patches, self.cuts())
+
+    def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> PanelShape:
+        """See `Panel.cut_back`; the side of a round patch keeps behind its plane, and square to the sheet."""
+        return cut_chain(self, planes, depth)
 
     def area(self) -> float:
         """Area of the trimmed skin, mm2. The shape must be buildable."""
@@ -114,12 +148,15 @@ class PolygonShape:
         feature: name of the shape feature.
         outline: (n, 3) corners, counterclockwise about the normal, in one plane, mm.
         normal: (3,) unit normal, OUTWARD.
+        posts: (n, 3) by how much each corner moves for one mm along the normal, as the walls lean; None where all
+            walls stand square to the sheet.
     """
 
     name: str
     feature: str
     outline: Array
     normal: Array
+    posts: Array | None = None
 
     @property
     def patches(self) -> tuple[Patch, ...]:
@@ -140,7 +177,22 @@ class PolygonShape:
 
     def offset(self, distance: float) -> PolygonShape:
         """The parallel panel at `distance` mm along the normal (negative: inwards)."""
-        return replace(self, outline=self.outline + distance * self.normal)
+        ways = self.normal if self.posts is None else self.posts
+        return replace(self, outline=self.outline + distance * ways)
+
+    def edge(self, edge: str) -> PanelEdge:
+        """See `Panel.edge`: all are straight."""
+        corners = edge_corners(self.corners(), edge)
+        return PanelEdge(corners=corners, outward=unit(cross(corners[1] - corners[0], self.normal)), normal=self.normal)
+
+    def arcs(self) -> CurvePieces:
+        """None."""
+        return segments(np.empty((0, 3)), np.empty((0, 3)))
+
+    def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> PolygonShape:
+        """See `Panel.cut_back`."""
+        outline, posts = cut_polygon(self, planes, depth)
+        return replace(self, outline=outline, posts=posts)
 
     @property
     def four_sided(self) -> bool:

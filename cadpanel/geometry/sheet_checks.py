@@ -32,4 +32,9 @@ def check_buildable(shape: Panel, thickness: float, skin_side: SkinSide = "outer
 
 def other_face(shape: Shape, thickness: float, skin_side: SkinSide) -> Shape:
     """The parallel skin on the far face of the sheet."""
-    return shape.offset(-thickness if skin_side == "outer" else thickness)
+    return shape.offset(sheet_depth(thickness, skin_side))
+
+
+def sheet_depth(thickness: float, skin_side: SkinSide) -> float:
+    """Where the far face of the sheet lies, mm along the skin's normal."""
+    return -thickness if skin_side == "outer" else thickness

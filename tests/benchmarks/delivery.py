@@ -30,13 +30,13 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
-from cadpanel.brep.proof.certificate import Certificate, ExpectedPanel, ExpectedSeam, PatchKind, certify
+from cadpanel.brep.proof.certificate import Certificate, certify
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_skins, write_solids
-from cadpanel.delivery.records.from_fit import FOUR_EDGES
 from cadpanel.delivery.settings import SheetSettings
-from cadpanel.delivery.sheets import PanelSheet, build_panels
+from cadpanel.delivery.sheets import FOUR_EDGES, PanelSheet, build_panels
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
@@ -87,7 +87,7 @@ def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helpe
         )
         for seam in reference.seams
     ]
-    return certify(folder / PANELS, folder / SKINS, expected, seams, helper)
+    return certify(folder / PANELS, folder / SKINS, expected, seams, helper, joint=0.0)
 
 
 def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
@@ -156,7 +156,7 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
     count_interpreter(seconds, "read", before)
     shapes = local_shapes(reference)
     with second_interpreter(panels) as helper:  # as a delivery does
-        built = timed(seconds, "build", lambda: build_panels(shapes, SheetSettings()))
+        built = timed(seconds, "build", lambda: build_panels(shapes, SheetSettings(), reference.seams).panels)
 
         def write_both() -> None:
             write_skins(folder / SKINS, built, "strip")

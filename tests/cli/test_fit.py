@@ -88,8 +88,9 @@ def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
 
 
 def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
-    options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --skin-side inner"
+    options = "--gap-tolerance 3 --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2"
     options += (
+        " --skin-side inner"
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
         " --blend 500-900 --blend N-02=45-62.5%"
     )
@@ -114,6 +115,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "seed": 7,
         "seam_tolerance": 0.5,
         "thickness": 5.0,
+        "joint": 2.0,
         "skin_side": "inner",
         "step_schema": "AP214",
     }

@@ -90,7 +90,7 @@ def slender(shape: PanelShape) -> PanelShape:
 
 
 def test_a_slender_cone_is_built_and_reported_as_a_cylinder_with_a_note() -> None:
-    (built,) = build_panels([random_panel(1, half_angle=1e-6)], SheetSettings())
+    (built,) = build_panels([random_panel(1, half_angle=1e-6)], SheetSettings()).panels
     assert [model.kind for model in patch_models(built.shape)] == ["plane", "cylinder", "plane"]
     assert 0.0 < built.moved < 0.02
     assert "built as a cylinder" in built.notes[0]

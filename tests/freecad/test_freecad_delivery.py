@@ -79,7 +79,7 @@ def test_skins_have_two_planes_and_one_cone_and_the_areas_of_the_report(folder: 
 def test_polygons_and_every_feature_arrive_as_valid_solids_of_their_volume(tmp_path: Path) -> None:
     shapes: list[Panel] = [random_polygon(1, corners) for corners in (3, 5, 6)]
     shapes += [replace(random_shapes(feature(name), 2, 1)[0], name=name) for name in NAMES]
-    built = build_panels(shapes, SheetSettings())
+    built = build_panels(shapes, SheetSettings()).panels
     write_solids(tmp_path / PANELS, built, "all")
     solids = import_with_freecad(tmp_path / PANELS)
     assert [thing["label"] for thing in solids] == [shape.name for shape in shapes]

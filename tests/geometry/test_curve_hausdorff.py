@@ -8,7 +8,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
+from cadpanel.geometry.curve_hausdorff import hausdorff_distances
+from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.end_curves import EndCurves
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape

@@ -10,6 +10,7 @@ from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
 from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.vectors import cross
 
 
 def chain_sheet(near: PanelShape, far: PanelShape) -> tuple[Sequence[TopoDS_Face], Sequence[TopoDS_Face]]:
@@ -53,12 +54,13 @@ def _side_wall(
     bottom: SkinTopology,
     posts: tuple[TopoDS_Edge, TopoDS_Edge],
 ) -> TopoDS_Face:
-    """The wall through a free ruling and its normal; `outward` is +1 where it faces along b."""
+    """The wall through a free ruling, as it leans; `outward` is +1 where it faces along b."""
     loop = [bottom.rulings[ruling].Reversed(), posts[0], top.rulings[ruling], posts[1].Reversed()]
     # t then n turns about t x n = b, so up the far post and back along the top is the loop about b, and this is -b's.
     if outward > 0:
         loop = [edge.Reversed() for edge in reversed(loop)]
-    normal = outward * shape.binormals()[ruling]
+    way_up = shape.normals[ruling] + shape.side_leans[0 if ruling == 0 else 1] * shape.binormals()[ruling]
+    normal = outward * cross(shape.directions[ruling], way_up)
     wall = surfaces.plane_surface(bottom.corners[0, ruling], normal, shape.directions[ruling])
     return edges.face_on(wall.surface, wall.agrees, loop)
 

@@ -1,4 +1,4 @@
-"""A planar polygon as an exact face, and its sheet as a prism whose walls stand square on it."""
+"""A planar polygon as an exact face, and its sheet as a prism whose walls stand as its posts do."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def polygon_sheet(near: PolygonShape, far: PolygonShape) -> tuple[list[TopoDS_Fa
     skin, other = _Level(near), _Level(far)
     skin_is_top = float((near.outline[0] - far.outline[0]) @ near.normal) > 0.0
     top, bottom = (skin, other) if skin_is_top else (other, skin)
-    faces = [top.face, TopoDS.Face_s(bottom.face.Reversed()), *_walls(near.normal, top, bottom)]
+    faces = [top.face, TopoDS.Face_s(bottom.face.Reversed()), *_walls(top, bottom)]
     return [skin.face], faces
 
 
@@ -41,7 +41,7 @@ def polygon_skin(shape: PolygonShape) -> list[TopoDS_Face]:
     return [_Level(shape).face]
 
 
-def _walls(normal: Array, top: _Level, bottom: _Level) -> list[TopoDS_Face]:
+def _walls(top: _Level, bottom: _Level) -> list[TopoDS_Face]:
     count = len(top.corners)
     posts = [
         edges.line_edge(bottom.vertices[i], top.vertices[i], bottom.corners[i], top.corners[i]) for i in range(count)
@@ -52,6 +52,7 @@ def _walls(normal: Array, top: _Level, bottom: _Level) -> list[TopoDS_Face]:
         # Counterclockwise about the way out: along the bottom edge, up, back along the top, down.
         loop: list[TopoDS_Shape] = [bottom.edges[i], posts[after], top.edges[i].Reversed(), posts[i].Reversed()]
         along = bottom.corners[after] - bottom.corners[i]
-        wall = surfaces.plane_surface(bottom.corners[i], np.cross(along, normal), along)
+        up = 0.5 * (top.corners[i] + top.corners[after] - bottom.corners[i] - bottom.corners[after])
+        wall = surfaces.plane_surface(bottom.corners[i], np.cross(along, up), along)
         walls.append(edges.face_on(wall.surface, wall.agrees, loop))
     return walls

@@ -38,8 +38,8 @@ def build_solid(shape: Panel, thickness: float, skin_side: SkinSide = "outer") -
     """The sheet of `thickness` mm on the panel's skin; with "outer" it lies at -n, with "inner" at +n.
 
     The other face is the parallel skin (plane by plane, cone by cone with the same half angle), the end walls lie in
-    the cut planes, and each side wall holds the free ruling and the skin's normal there. A cone of half angle 5e-6 rad
-    or less is built as a cylinder; `Panel.straightened` says which and what it moves.
+    the cut planes, and each side wall holds the outer ruling and leans as the panel says (see `Panel.cut_back`). A cone
+    of half angle 5e-6 rad or less is built as a cylinder; `Panel.straightened` says which and what it moves.
 
     Raises:
         PanelError: if the sheet cannot be built (see `check_buildable`).

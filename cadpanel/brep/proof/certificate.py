@@ -9,18 +9,19 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
-from typing import Literal
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.brep.proof.parallel import Helper, inspect_files
+from cadpanel.brep.proof.clearances import Clear, clearances
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
+from cadpanel.brep.proof.overlaps import unparted
+from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files
+from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
-from cadpanel.geometry.curve_hausdorff import CurvePieces, hausdorff_distances
 from cadpanel.geometry.kink import edge_angles
-from cadpanel.geometry.shape import edge_corners
 
 TANGENCY_LIMIT = 1e-9
 """Radians between neighbouring patches, read back."""
@@ -28,49 +29,10 @@ VOLUME_LIMIT = 1e-9
 """Relative difference between the kernel's volume and the expected one."""
 POSITION_LIMIT = 1e-6
 """Distance in mm of a corner from where it is expected, and of a solid's skin from the skin file's."""
-GAP_LIMIT = 1e-4
-"""How much wider than stated a seam may be, mm, and as a part of its gap: both are found by sampling, and where edges
-of different kinds stand far apart the farthest point lies between two samples."""
+OVERLAP_LIMIT = 1e-6
+"""Volume in mm3 that the kernel may find in common of two solids that touch."""
 FOLD_ANGLE = 0.1
 """Radians; straight edges with a smaller angle between their faces are meant to be smooth; a sheet's own have more."""
-
-PatchKind = Literal["plane", "cone", "cylinder"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExpectedPanel:
-    """What a panel in the files must be.
-
-    Attributes:
-        name: its product name in both files.
-        volume: analytic volume of the sheet, mm3.
-        kinds: kinds of its patches in the order of the walk, as built.
-        corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
-        far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
-
-    Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
-    """
-
-    name: str
-    volume: float
-    kinds: tuple[PatchKind, ...]
-    corners: Array
-    far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExpectedSeam:
-    """Two edges that face each other.
-
-    Attributes:
-        panels: names of the two panels.
-        edges: which edge of each, for example "end 1" or "side 0".
-        gap: the gap along the whole seam that the report states, mm; None to measure only.
-    """
-
-    panels: tuple[str, str]
-    edges: tuple[str, str]
-    gap: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,6 +50,9 @@ class Certificate:
         max_corner_error: farthest corner of a skin from where it is expected, mm.
         seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
         max_seam_gap: the widest of them, mm; 0 without seams.
+        clear: the least and the largest clear width of each seam's joint, mm, in their order, None where walls are not
+            found; empty where no joint was promised.
+        overlap: the largest volume that two solids share, mm3; None where no joint was promised.
         failures: one sentence for everything that does not hold, naming the panel.
     """
 
@@ -101,6 +66,8 @@ class Certificate:
     max_corner_error: float
     seam_gaps: tuple[float, ...]
     max_seam_gap: float
+    clear: tuple[Clear | None, ...]
+    overlap: float | None
     failures: tuple[str, ...]
 
     @property
@@ -115,8 +82,17 @@ def certify(
     panels: Sequence[ExpectedPanel],
     seams: Sequence[ExpectedSeam] = (),
     helper: Helper | None = None,
+    joint: float | None = None,
 ) -> Certificate:
-    """Read both files and prove them against the expected numbers, with the help of an interpreter that runs already.
+    """Read both files and prove them against the expected numbers.
+
+    Args:
+        panels_step: the file of solids.
+        skins_step: the file of skins.
+        panels: what both must hold.
+        seams: which of their edges meet.
+        helper: an interpreter that runs already, to help.
+        joint: the width of the joint that was asked for, mm; None where none was promised, not even that sheets touch.
 
     Raises:
         DeliveryError: if a file cannot be read at all.
@@ -138,7 +114,9 @@ def certify(
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
-    gaps = _seam_gaps(panels, skin_of, seams, failures)
+    gaps = seam_gaps(panels, skin_of, seams, failures)
+    clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)
+    overlap = None if joint is None else _overlap(panels_step, solids, failures)
     kinds = Counter[str]()
     for facts in solids:
         kinds.update(facts.face_kinds)
@@ -153,8 +131,24 @@ def certify(
         max_corner_error=corner_error,
         seam_gaps=tuple(gaps),
         max_seam_gap=max(gaps, default=0.0),
+        clear=tuple(clear),
+        overlap=overlap,
         failures=tuple(failures),
     )
+
+
+def _overlap(panels_step: str | os.PathLike[str], solids: Sequence[ShapeFacts], failures: list[str]) -> float:
+    """The largest volume that two solids share, mm3, of those that no plane parts."""
+    pairs = unparted(solids)
+    shared = common_volumes(panels_step, pairs) if pairs else []
+    for (first, second), volume in zip(pairs, shared, strict=True):
+        if not volume <= OVERLAP_LIMIT:
+            failures.append(
+                f"Panels '{solids[first].name}' and '{solids[second].name}' share {volume:.3g} mm3, and no "
+                "seam between them is known: take a thinner sheet, a wider --seam-tolerance, or, where corners lie on "
+                "sides, --junctions."
+            )
+    return max(shared, default=0.0)
 
 
 def _names_kept(label: str, found: Sequence[ShapeFacts], panels: Sequence[ExpectedPanel], failures: list[str]) -> bool:
@@ -255,56 +249,3 @@ def _farthest(points: Array, others: Array) -> float:
     """Distance in mm of the point that is farthest from its nearest other; infinite if there is none to be near."""
     apart = np.linalg.norm(points[:, None] - others[None], axis=-1).min(axis=1, initial=np.inf)
     return float(apart.max(initial=0.0))
-
-
-def _seam_gaps(
-    panels: Iterable[ExpectedPanel],
-    skin_of: dict[str, ShapeFacts],
-    seams: Sequence[ExpectedSeam],
-    failures: list[str],
-) -> list[float]:
-    """Measured gap of each seam; one whose ends cannot be found fails and counts as infinitely wide."""
-    corners = {panel.name: panel.corners for panel in panels}
-    sides: list[tuple[CurvePieces, CurvePieces]] = []
-    measured: list[int] = []
-    for index, seam in enumerate(seams):
-        found = [
-            _edge_curve(skin_of[name], corners[name], edge) if name in skin_of and name in corners else None
-            for name, edge in zip(seam.panels, seam.edges, strict=True)
-        ]
-        if found[0] is None or found[1] is None:
-            failures.append(f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': an edge cannot be found on the skins.")
-            continue
-        sides.append((found[0], found[1]))
-        measured.append(index)
-    gaps = [float("inf")] * len(seams)
-    distances = hausdorff_distances([one for one, _ in sides], [two for _, two in sides])
-    for index, gap in zip(measured, distances.tolist(), strict=True):
-        gaps[index] = gap
-        stated = seams[index].gap
-        if stated is not None and not gap <= stated + GAP_LIMIT * (1.0 + stated):
-            first, second = seams[index].panels
-            failures.append(f"Seam '{first}' to '{second}': the gap is {gap:.6g} mm, {stated:.6g} mm are stated.")
-    return gaps
-
-
-def _edge_curve(skin: ShapeFacts, corners: Array, edge: str) -> CurvePieces | None:
-    """The boundary pieces whose two vertices are both nearest to corners of the edge; None unless they make it up."""
-    try:
-        own = edge_corners(corners, edge)
-    except ValueError:
-        return None
-    flat = corners.reshape(-1, 3)
-    nearest = flat[np.linalg.norm(skin.border_ends[:, :, None] - flat, axis=-1).argmin(axis=-1)]
-    chosen = (nearest[:, :, None] == own).all(axis=-1).any(axis=-1).all(axis=1)
-    if int(chosen.sum()) != len(own) - 1:
-        return None
-    border = skin.border
-    return CurvePieces(
-        centers=border.centers[chosen],
-        cosine_axes=border.cosine_axes[chosen],
-        sine_axes=border.sine_axes[chosen],
-        starts=border.starts[chosen],
-        stops=border.stops[chosen],
-        arcs=border.arcs[chosen],
-    )

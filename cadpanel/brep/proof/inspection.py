@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
@@ -22,7 +23,7 @@ from cadpanel.brep.building.sheet import volume_of
 from cadpanel.brep.kernel.shapes import edges_of, faces_of, packed, shapes_of, unpacked
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.brep.step.file import OpenStep, open_step
-from cadpanel.geometry.curve_hausdorff import CurvePieces
+from cadpanel.geometry.curve_pieces import CurvePieces
 
 _ROUND = {GeomAbs_Cone: "cone", GeomAbs_Cylinder: "cylinder"}
 
@@ -57,6 +58,11 @@ class Inspector:
         shapes = self._shapes(path)
         return [(shapes[place][0], packed(shapes[place][1])) for place in places]
 
+    def common(self, path: Path, pairs: Iterable[tuple[int, int]]) -> list[float]:
+        """Volume that pairs of the file's shapes share, mm3."""
+        shapes = self._shapes(path)
+        return [abs(volume_of(BRepAlgoAPI_Common(shapes[i][1], shapes[j][1]).Shape())) for i, j in pairs]
+
     def close(self) -> None:
         """Keep nothing."""
         self._path = self._opened = None
@@ -81,8 +87,10 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     edges = _edges_with_faces(faces)
     shared = [_straight(edge, *(surfaces[face][1] for face in owners)) for edge, owners in edges if len(owners) == 2]
     straight = [found for found in shared if found is not None]
-    border = [_border(edge) for edge, owners in edges if len(owners) == 1]
-    pieces = [found for found in border if found is not None]
+    curves = [_piece(edge) for edge, _ in edges]
+    lies_on = np.array([(*of, -1)[:2] for _, of in edges], dtype=np.intp).reshape(-1, 2)
+    known = np.array([curve is not None for curve in curves], dtype=bool)
+    pieces = [curve for curve in curves if curve is not None]
     solids = len(shapes_of(shape, TopAbs_SOLID))
     return ShapeFacts(
         name=name,
@@ -95,9 +103,11 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         straight_edges=np.array([ends for ends, _ in straight]).reshape(-1, 2, 3),
         edge_surfaces=np.array([pair for _, pair in straight]).reshape(-1, 2, 9),
         vertices=_vertices(shape),
-        border=_pieces([curve for curve, _ in pieces]),
-        border_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
-        other_borders=len(border) - len(pieces),
+        pieces=_pieces([curve for curve, _ in pieces]),
+        piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
+        piece_faces=lies_on[known],
+        other_edges=lies_on[~known],
+        surfaces=np.array([numbers or [np.nan] * 9 for _, numbers in surfaces]).reshape(-1, 9),
     )
 
 
@@ -154,8 +164,8 @@ def _ends(edge: TopoDS_Edge) -> list[list[float]]:
     return [_xyz(BRep_Tool.Pnt_s(end)) for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))]
 
 
-def _border(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | None:
-    """A boundary edge as rows (center, cosine axis, sine axis, [start, stop, is arc]) and its ends; None if neither."""
+def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | None:
+    """An edge as rows (center, cosine axis, sine axis, [start, stop, is arc]) and its ends; None if neither."""
     curve = BRepAdaptor_Curve(edge)
     start, stop = curve.FirstParameter(), curve.LastParameter()
     if curve.GetType() == GeomAbs_Line:

@@ -73,6 +73,13 @@ class _File:
         """Facts of some of its shapes."""
         return cast(list[ShapeFacts], self.ask("facts", places))
 
+    def common_volumes(self, pairs: Sequence[tuple[int, int]]) -> list[float]:
+        """Read it and measure what pairs of its shapes share, mm3."""
+        self.open()
+        found = cast(list[float], self.ask("common", pairs))
+        self.ask("close")
+        return found
+
     def all_facts(self) -> list[ShapeFacts]:
         """Read it and inspect all of it."""
         found = self.facts(range(self.open()))
@@ -142,6 +149,15 @@ def inspect_files(
         if started is None:
             return _File(READER, panels).all_facts(), _File(READER, skins).all_facts()
         return _inspect_together(panels, skins, started)
+
+
+def common_volumes(panels_step: str | os.PathLike[str], pairs: Sequence[tuple[int, int]]) -> list[float]:
+    """The volume that pairs of a file's shapes share, mm3, by their places in it.
+
+    Raises:
+        DeliveryError: if the file cannot be read, or the kernel crashes over it or does not end.
+    """
+    return _File(READER, Path(panels_step)).common_volumes(pairs)
 
 
 def _inspect_together(panels: Path, skins: Path, helper: Helper) -> tuple[list[ShapeFacts], list[ShapeFacts]]:

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cadpanel.arrays import Array
-from cadpanel.geometry.curve_hausdorff import CurvePieces
+import numpy as np
+
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
 
@@ -29,9 +31,11 @@ class ShapeFacts:
         edge_surfaces: (m, 2, 9) the two surfaces: point on axis or plane, axis or plane normal, radius, half angle,
             and +1 or -1 by which the surface's own normal becomes the face's. A plane has radius 0.
         vertices: (v, 3) mm.
-        border: boundary edges that are lines or ellipses.
-        border_ends: (b, 2, 3) their two end vertices, mm.
-        other_borders: number of boundary edges that are neither.
+        pieces: the edges that are lines or ellipses.
+        piece_ends: (e, 2, 3) their two end vertices, mm.
+        piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
+        other_edges: (o, 2) the same for the edges that are neither.
+        surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
     """
 
     name: str
@@ -44,6 +48,18 @@ class ShapeFacts:
     straight_edges: Array
     edge_surfaces: Array
     vertices: Array
-    border: CurvePieces
-    border_ends: Array
-    other_borders: int
+    pieces: CurvePieces
+    piece_ends: Array
+    piece_faces: IntArray
+    other_edges: IntArray
+    surfaces: Array
+
+    @property
+    def border(self) -> BoolArray:
+        """(e,) which of the pieces bound the shape."""
+        return np.asarray(self.piece_faces[:, 1] < 0)
+
+    @property
+    def other_borders(self) -> int:
+        """Number of boundary edges that are neither lines nor ellipses."""
+        return int((self.other_edges[:, 1] < 0).sum())

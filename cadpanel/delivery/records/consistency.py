@@ -22,6 +22,8 @@ SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
 SAME_ANGLE = 1e-6
 """Degrees by which a patch's sweep may differ from what its corners, to the last digit of a double, enclose."""
+SAME_VOLUME = 1e-6
+"""Volume in mm3 by which what two solids share may differ between two machines."""
 ON_PATCH = 1e-5
 """Distance in mm of a corner from the patches that meet there."""
 
@@ -93,8 +95,7 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
     gaps = np.array(seam.corner_gaps)
     try:
         first, second = (
-            edge_corners(np.array(panels[panel].corners), edge)
-            for panel, edge in zip(seam.panels, seam.edges, strict=True)
+            edge_corners(_fitted(panels[panel]), edge) for panel, edge in zip(seam.panels, seam.edges, strict=True)
         )
     except ValueError as error:
         yield f"{name}: {error}."
@@ -111,6 +112,11 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
         yield f"{name}: the corner gaps in the report are off by {off:.3g} mm from its panels' corners."
     if seam.max_corner_gap != gaps.max():
         yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
+
+
+def _fitted(panel: PanelModel) -> Array:
+    """The panel's corners as the fit had them, in rows."""
+    return np.array(panel.corners if panel.fitted is None else panel.fitted.corners)
 
 
 def _summary_faults(report: ReportModel) -> Iterator[str]:
@@ -207,3 +213,9 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         was, now = getattr(stated, key), getattr(found, key)
         if not abs(was - now) <= limit:
             yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."
+    for key in ("least", "largest"):
+        was, now = (None if one.clear is None else getattr(one.clear, key) for one in (stated, found))
+        if (was is None) != (now is None) or (was is not None and not abs(was - now) <= SAME_LENGTH):
+            yield f"The certificate in the report says clear.{key} = {was}, the files show {now}."
+    if stated.overlap is not None and found.overlap is not None and not found.overlap <= stated.overlap + SAME_VOLUME:
+        yield f"The certificate in the report says overlap = {stated.overlap:.6g}, the files show {found.overlap:.6g}."

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cadpanel.delivery.records.from_shape import patch_models, vector
+from cadpanel.delivery.records.from_shape import cut_model, fitted_model, patch_models, rows
 from cadpanel.delivery.records.report import (
     BaselinesModel,
     PanelModel,
@@ -18,17 +18,17 @@ from cadpanel.delivery.records.report import (
     SolveModel,
 )
 from cadpanel.delivery.records.summary import summary
-from cadpanel.delivery.sheets import PanelSheet
+from cadpanel.delivery.sheets import FOUR_EDGES, Built, PanelSheet
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.result import FitResult
+from cadpanel.geometry.joints import Joint
 from cadpanel.reference.model import PanelReference, Reference, Seam
 from cadpanel.reference.settings import ReferenceSettings
 
 # An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
 WORTH_A_NOTE = 0.02
-FOUR_EDGES = ("end 0", "end 1", "side 0", "side 1")
 
 
 def reference_record(reference: Reference) -> ReferenceModel:
@@ -68,11 +68,11 @@ def baselines_record(result: FitResult) -> BaselinesModel:
     )
 
 
-def panel_records(result: FitResult, built: Sequence[PanelSheet]) -> tuple[PanelModel, ...]:
+def panel_records(result: FitResult, built: Built) -> tuple[PanelModel, ...]:
     """Every panel as it was fitted and built."""
     return tuple(
         _panel(result, index, reference, panel)
-        for index, (reference, panel) in enumerate(zip(result.reference.panels, built, strict=True))
+        for index, (reference, panel) in enumerate(zip(result.reference.panels, built.panels, strict=True))
     )
 
 
@@ -89,9 +89,10 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         max_free_edge_drift=float(measures.drift_across[index]),
         area=built.area,
         volume=built.volume,
-        corners=tuple(tuple(vector(corner) for corner in row) for row in built.shape.corners()),
+        corners=rows(built.shape.corners()),
+        fitted=fitted_model(built.fitted),
         patches=patch_models(built.shape),
-        taken=tuple(map(tuple, taken(reference, built.shape).tolist())),
+        taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
         moved=built.moved,
         notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
     )
@@ -99,7 +100,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
 
 def _blend_note(reference: PanelReference, built: PanelSheet, blends: Sequence[Blend]) -> tuple[str, ...]:
     """What to say of a panel whose bend is not where it was told to be."""
-    missed = missed_blend(reference, built.shape, blends)
+    missed = missed_blend(reference, built.fitted, blends)
     if missed is None:
         return ()
     # The same on both ends is said once.
@@ -123,9 +124,15 @@ def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
     )
 
 
-def seam_records(reference: Reference, measures: Measures) -> tuple[SeamModel, ...]:
-    """Every seam; the panel that comes first in the file is named first, as its walk orders the corners."""
-    return tuple(_seam(reference, seam, measures, index) for index, seam in enumerate(reference.seams))
+def seam_records(reference: Reference, measures: Measures, joints: Sequence[Joint]) -> tuple[SeamModel, ...]:
+    """Every seam; the panel that comes first in the file is named first, as its walk orders the corners.
+
+    Args:
+        reference: with the seams.
+        measures: of their gaps and kinks.
+        joints: of each, as `Built` has them.
+    """
+    return tuple(_seam(reference, seam, measures, index, joints[index]) for index, seam in enumerate(reference.seams))
 
 
 def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
@@ -138,7 +145,7 @@ def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
     return reference.panels[first].name, reference.panels[second].name
 
 
-def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> SeamModel:
+def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint) -> SeamModel:
     order = np.argsort(seam.panels, kind="stable")
     first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
     gaps = measures.corner_gaps[index]
@@ -150,6 +157,8 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int) -> S
         max_corner_gap=float(gaps.max()),
         max_seam_gap=float(measures.seam_gap[index]),
         max_kink=float(np.degrees(measures.kink[index])),
+        plane=cut_model(joint.plane.point, (1.0 if order[0] == 0 else -1.0) * joint.plane.normal),
+        recut=joint.recut,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
+from cadpanel.delivery.records.report import CutModel, FittedModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
@@ -41,6 +42,22 @@ def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
         else:
             models.append(PlanePatchModel(normal=vector(shape.normals[index]), point=vector(corners[0, index])))
     return tuple(models)
+
+
+def fitted_model(shape: Panel) -> FittedModel:
+    """A panel as it was fitted: its corners, and the planes that cut its ends."""
+    cuts = tuple(cut_model(point, normal) for point, normal in zip(*shape.cuts(), strict=True))
+    return FittedModel(corners=rows(shape.corners()), cuts=cuts)
+
+
+def cut_model(point: Array, normal: Array) -> CutModel:
+    """The plane through a point (3,) with a unit normal (3,)."""
+    return CutModel(normal=vector(normal), offset=float(point @ normal))
+
+
+def rows(corners: Array) -> tuple[tuple[Vector, ...], ...]:
+    """Corners (r, m, 3) as a record holds them."""
+    return tuple(tuple(vector(corner) for corner in row) for row in corners)
 
 
 def vector(xyz: Array) -> Vector:

@@ -70,6 +70,32 @@ class SolveModel(Record):
     gap_price: NonNegative | None = None
 
 
+class CutModel(Record):
+    """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
+
+    normal: Vector
+    offset: float
+
+
+class FittedModel(Record):
+    """A panel as it was fitted, before it was cut back from its seams.
+
+    Attributes:
+        corners: as `PanelModel.corners`, mm; by them gaps are measured.
+        cuts: the planes that cut end 0 and end 1; none of a polygon.
+    """
+
+    corners: tuple[tuple[Vector, ...], ...]
+    cuts: tuple[CutModel, ...] = ()
+
+
+class ClearModel(Record):
+    """The clear width of joints between sheets, mm."""
+
+    least: float
+    largest: float
+
+
 class PanelModel(Record):
     """One panel as it was fitted and built.
 
@@ -85,7 +111,8 @@ class PanelModel(Record):
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
         corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
-            of a chain, one row round a polygon.
+            of a chain, one row round a polygon. Half a joint back from the seams.
+        fitted: the same before it was cut back; None in reports from before panels were.
         patches: in the order of the walk across the panel, as they are built.
         taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
             along the reference's end 0 and end 1; empty for polygons.
@@ -104,6 +131,7 @@ class PanelModel(Record):
     area: Positive
     volume: Positive
     corners: tuple[tuple[Vector, ...], ...]
+    fitted: FittedModel | None = None
     patches: tuple[PatchModel, ...]
     taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
@@ -132,6 +160,11 @@ class SeamModel(Record):
         max_corner_gap: the largest of them, mm.
         max_seam_gap: symmetric Hausdorff distance between the two edges, mm.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
+        plane: in the middle of the joint, its normal out of the first panel; None in reports from before there were
+            joints.
+        recut: how far a corner of either edge was from that plane, at most, mm: so far the edges were moved to lie in
+            it; the same.
+        clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same.
     """
 
     panels: tuple[str, str]
@@ -141,6 +174,9 @@ class SeamModel(Record):
     max_corner_gap: NonNegative
     max_seam_gap: NonNegative
     max_kink: NonNegative
+    plane: CutModel | None = None
+    recut: NonNegative | None = None
+    clear: ClearModel | None = None
 
 
 @with_keys(limit.rows[-1].key for limit in LIMITS)
@@ -198,7 +234,10 @@ class CertificateModel(Record):
         max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
         volume_error: largest relative difference between a solid's volume and the formula's.
         names_kept: whether every panel was found again under its name.
-        max_seam_gap: mm, measured on the faces that were read.
+        max_seam_gap: mm, measured on the faces that were read, carried on to where the fit has cut them.
+        clear: the least and the largest clear width of all joints, mm; None without seams.
+        overlap: the largest volume that two solids share, mm^3; 0 where a plane parts every two. None in reports from
+            before joints were proved.
         failures: what does not hold, one sentence each; empty where everything does.
     """
 
@@ -210,6 +249,8 @@ class CertificateModel(Record):
     volume_error: NonNegative
     names_kept: bool
     max_seam_gap: NonNegative
+    clear: ClearModel | None = None
+    overlap: NonNegative | None = None
     failures: tuple[str, ...] = ()
 
 

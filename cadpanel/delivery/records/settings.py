@@ -70,6 +70,8 @@ class SettingsModel(ComparisonSettingsModel):
         max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         method: name of the method.
         thickness: of the sheet, mm.
+        joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
+            nothing is said of sheets that overlap, either.
         skin_side: "outer" where the skin is the sheet's outer face.
         step_schema: of the STEP files.
     """
@@ -79,6 +81,7 @@ class SettingsModel(ComparisonSettingsModel):
     max_deviation: Annotated[float, Field(gt=0.0)] | None = None
     method: str
     thickness: NonNegative
+    joint: NonNegative | None = None
     skin_side: Literal["outer", "inner"]
     step_schema: Literal["AP242", "AP214"]
 

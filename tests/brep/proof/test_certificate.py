@@ -18,7 +18,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from cadpanel.brep.isolation import client
 from cadpanel.brep.proof import parallel
-from cadpanel.brep.proof.certificate import ExpectedSeam
+from cadpanel.brep.proof.expected import ExpectedSeam
 from cadpanel.brep.proof.inspection import Inspector, inspect_packed
 from cadpanel.brep.step.file import write_step
 from cadpanel.errors import DeliveryError

@@ -1,0 +1,122 @@
+"""How wide the joints are that stand between the sheets in a file, along whole seams. Millimetres.
+
+Both walls at a seam are planes. The clear width is measured square to either wall, from every point of the other one's
+outline: along both faces of the sheet, and up and down its corners. It is linear on a wall, so it is least and largest
+on the outline, and an arc of ellipse is extreme where a formula says. Where two walls are not parallel, as at the sides
+of cones, a corner of one may lie where the other has ended: the joint is at least as wide as the space between two
+parallel planes that part the walls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.brep.proof.edge_pieces import edge_pieces
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
+from cadpanel.brep.proof.shape_facts import ShapeFacts
+from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.vectors import unit
+
+CLEAR_LIMIT = 1e-6
+"""How much narrower than asked a joint may be, and how far from what is stated, mm."""
+DIGITS = 9
+"""Of a width in mm that are told: those behind them are rounding's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clear:
+    """The least and the largest clear width along a seam, mm, to DIGITS digits."""
+
+    least: float
+    largest: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Wall:
+    """A wall: a point on its plane, its unit normal out of the sheet, and its outline."""
+
+    point: Array
+    normal: Array
+    outline: CurvePieces
+
+
+def clearances(
+    panels: Iterable[ExpectedPanel],
+    solid_of: dict[str, ShapeFacts],
+    seams: Sequence[ExpectedSeam],
+    joint: float,
+    failures: list[str],
+) -> list[Clear | None]:
+    """The clear width of each seam's joint, None where it has no two walls; what is not as asked or stated fails."""
+    expected = {panel.name: panel for panel in panels}
+    found: list[Clear | None] = []
+    for seam in seams:
+        walls = [
+            _wall(solid_of[name], expected[name].corners, edge) if name in solid_of and name in expected else None
+            for name, edge in zip(seam.panels, seam.edges, strict=True)
+        ]
+        first, second = walls
+        if first is None or second is None:
+            failures.append(f"{seam.called}: a wall of the sheets cannot be found.")
+            found.append(None)
+            continue
+        clear = _between(first, second, seam.across)
+        found.append(clear)
+        failures += _faults(seam, clear, joint)
+    return found
+
+
+def _faults(seam: ExpectedSeam, clear: Clear, joint: float) -> list[str]:
+    if not clear.least >= joint - CLEAR_LIMIT:
+        return [f"{seam.called}: the joint is only {clear.least:.6g} mm wide, {joint:g} mm were asked for."]
+    if seam.clear is None:
+        return []
+    off = max(abs(clear.least - seam.clear[0]), abs(clear.largest - seam.clear[1]))
+    if off <= CLEAR_LIMIT:
+        return []
+    return [
+        f"{seam.called}: the joint is {clear.least:.6g} to {clear.largest:.6g} mm wide, {seam.clear[0]:.6g} to "
+        f"{seam.clear[1]:.6g} mm are stated."
+    ]
+
+
+def _wall(solid: ShapeFacts, corners: Array, edge: str) -> _Wall | None:
+    """The face of a sheet at one edge: of the planes on which all of the edge lies, the one that leaves the skin."""
+    chosen = edge_pieces(solid, corners, edge)
+    if chosen is None:
+        return None
+    shared = set.intersection(*(set(faces) for faces in solid.piece_faces[chosen].tolist())) - {-1}
+    flat = [face for face in shared if solid.surfaces[face, 6] == 0.0]
+    if not flat:
+        return None
+    bounds = [(solid.piece_faces == face).any(axis=1) for face in flat]
+    leaves = [_farthest(solid.piece_ends[own].reshape(-1, 3), corners.reshape(-1, 3)) for own in bounds]
+    place = int(np.argmax(leaves))
+    surface = solid.surfaces[flat[place]]
+    return _Wall(surface[:3], surface[8] * surface[3:6], solid.pieces.take(bounds[place]))
+
+
+def _farthest(points: Array, corners: Array) -> float:
+    """How far the farthest point is from the corner that is nearest to it."""
+    return float(np.linalg.norm(points[:, None] - corners, axis=-1).min(axis=1).max())
+
+
+def _between(one: _Wall, other: _Wall, across: Array | None) -> Clear:
+    widths = [_beyond(one, other.outline), _beyond(other, one.outline)]
+    halfway = unit(one.normal - other.normal)
+    ways = np.stack([halfway, halfway if across is None else unit(across)])
+    between = other.outline.reach(ways)[0].min(axis=1) - one.outline.reach(ways)[1].max(axis=1)
+    least = max(float(between.max()), min(least for least, _ in widths))
+    largest = max(largest for _, largest in widths)
+    return Clear(round(least, DIGITS) + 0.0, round(largest, DIGITS) + 0.0)
+
+
+def _beyond(wall: _Wall, outline: CurvePieces) -> tuple[float, float]:
+    """How far an outline lies beyond a wall's plane, at least and at most."""
+    least, greatest = outline.reach(wall.normal[None])
+    level = float(wall.normal @ wall.point)
+    return float(least.min()) - level, float(greatest.max()) - level

@@ -1,0 +1,49 @@
+"""Do any two sheets in a file share volume? Millimetres.
+
+Two sheets share none where a plane parts them: a wall of either, or any other of their flat faces. What a plane of
+planes, cones and cylinders bounds is farthest out, in any direction, on an edge: where a developable face touches a
+plane, it does so along a whole ruling, which ends on edges. So sheets are parted, or not, by their edges alone. The
+kernel is asked only for what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.brep.proof.shape_facts import ShapeFacts
+from cadpanel.geometry.boxes import meeting
+
+TOUCH = 1e-7
+"""How far one sheet may reach through the plane that parts it from another, mm: the kernel's own tolerance."""
+
+
+def unparted(solids: Sequence[ShapeFacts]) -> list[tuple[int, int]]:
+    """Pairs of sheets, by their places, whose boxes meet and which none of their flat faces parts."""
+    there = [place for place, facts in enumerate(solids) if facts.solids and len(facts.pieces)]
+    boxes = np.array([_box(solids[place]) for place in there]).reshape(-1, 2, 3)
+    return [
+        (i, j)
+        for i, j in sorted((there[one], there[other]) for one, other in meeting(boxes[:, 0], boxes[:, 1], TOUCH))
+        if not (_parts(solids[i], solids[j]) or _parts(solids[j], solids[i]))
+    ]
+
+
+def _box(facts: ShapeFacts) -> tuple[Array, Array]:
+    """The least and greatest coordinates (3,); without end where an edge is of a kind that cannot be measured."""
+    if len(facts.other_edges):
+        return np.full(3, -np.inf), np.full(3, np.inf)
+    least, greatest = facts.pieces.reach(np.eye(3))
+    return least.min(axis=1), greatest.max(axis=1)
+
+
+def _parts(one: ShapeFacts, other: ShapeFacts) -> bool:
+    """Whether a flat face of the one parts it from the other: the one is behind it, the other beyond."""
+    if len(one.other_edges) or len(other.other_edges):
+        return False
+    planes = one.surfaces[one.surfaces[:, 6] == 0.0]
+    normals = planes[:, 8:] * planes[:, 3:6]
+    ahead = other.pieces.reach(normals)[0].min(axis=1) - one.pieces.reach(normals)[1].max(axis=1)
+    return bool(ahead.max(initial=-np.inf) >= -TOUCH)

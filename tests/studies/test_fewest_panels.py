@@ -43,7 +43,7 @@ class MadeUp:
         base = fitted()
         measures = replace(base.measures, max_deviation=np.full(3, far), seam_gap=np.full(2, gap))
         shapes = (base.shapes[0],) * count
-        held = far <= ALLOWED and gap <= how.gap_tolerance
+        held = far <= ALLOWED and gap <= how.widest_gap
         return replace(base, reference=reference, settings=how, measures=measures, shapes=shapes, tolerance_met=held)
 
 

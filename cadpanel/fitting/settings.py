@@ -246,13 +246,13 @@ class FitSettings:
         return self.feature
 
 
-LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
-"""What Table 1 is made under if nothing else is asked for: it is about how far gaps close, and its seams may lean."""
-
-
 def _require_weights(value: object) -> None:
     if not isinstance(value, Weights | None):
         raise SettingsError(f"the weights must be Weights or None, not {value!r}")
+
+
+LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
+"""What Table 1 is made under if nothing else is asked for: it is about how far gaps close, and its seams may lean."""
 
 
 class FitKeywords(TypedDict, total=False):

@@ -15,6 +15,7 @@ import pytest
 from cadpanel.cli.compare import compare
 from cadpanel.cli.fit import fit
 from cadpanel.cli.inspect import inspect
+from cadpanel.cli.study import study
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.records.comparison import read_comparison, write_comparison
 from cadpanel.delivery.records.from_fit import reference_record
@@ -93,6 +94,7 @@ def test_the_comparisons_settings_are_those_that_all_columns_share() -> None:
 def test_the_options_are_the_settings() -> None:
     assert options(fit) == FIT | READ | SHEET | SHOP | OF_THE_COMMAND | {"reference"}
     assert options(compare) == options(fit) - SHEET - SHOP - set(OF_A_COLUMN) - {"time_limit"}
+    assert options(study) == options(compare) - {"weights"} | {"feature", "max_deviation"}
     assert options(inspect) == {"file", "unit", "faces", "seam_tolerance", "as_json"}
 
 

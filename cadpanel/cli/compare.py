@@ -11,16 +11,15 @@ from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import COMPARISON, delivery_folder
 from cadpanel.delivery.records.comparison import ComparisonModel, write_comparison
 from cadpanel.delivery.records.settings import OF_A_COLUMN
-from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.settings import LIKE_THE_PAPER, FitSettings
 from cadpanel.reference.settings import ReferenceSettings
-from cadpanel.studies.table1 import USUAL
 
 
 @options.made_of_settings
 def compare(
     reference: options.ReferenceFile,
     out: options.Out,
-    settings: Annotated[FitSettings, options.Without(OF_A_COLUMN), options.Usual(USUAL)],
+    settings: Annotated[FitSettings, options.Without(OF_A_COLUMN), options.Usual(LIKE_THE_PAPER)],
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,

@@ -251,6 +251,10 @@ def _require_weights(value: object) -> None:
         raise SettingsError(f"the weights must be Weights or None, not {value!r}")
 
 
+LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
+"""What Table 1 is made under if nothing else is asked for: it is about how far gaps close, and its seams may lean."""
+
+
 class FitKeywords(TypedDict, total=False):
     """The fields of `FitSettings` as keywords, which type checkers want written out; a test holds the two alike."""
 

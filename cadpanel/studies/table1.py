@@ -7,14 +7,11 @@ from dataclasses import replace
 
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import fit
-from cadpanel.fitting.settings import FitSettings, Method
+from cadpanel.fitting.settings import LIKE_THE_PAPER, FitSettings, Method
 from cadpanel.reference.model import Reference
 
 METHODS: tuple[Method, ...] = ("two_stage", "concurrent")
 FEATURES = ("plane-cylinder-plane", "plane-cone-plane")
-
-USUAL = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
-"""What is asked for if nothing else is: the paper's table is about how far gaps close, and its seams may lean."""
 
 # The column (feature and method) that is being fitted, the round, and the largest excess over a tolerance.
 Progress = Callable[[str, str, int, float, float], None]
@@ -27,13 +24,14 @@ def compare(
 
     Args:
         reference: what is to be approximated.
-        settings: tolerance, limits, tilt and restarts, by default `USUAL`; its feature and method are not used.
+        settings: tolerance, limits, tilt and restarts, by default `LIKE_THE_PAPER`; its feature and method are not
+            used.
         progress: told when a column begins (step 0), and of every step of a concurrent fit.
 
     Raises:
         PanelError: a panel's faces are nothing that a feature could approximate.
     """
-    how = settings or USUAL
+    how = settings or LIKE_THE_PAPER
     return tuple(_column(reference, how, feature, method, progress) for method in METHODS for feature in FEATURES)
 
 

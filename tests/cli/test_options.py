@@ -55,13 +55,20 @@ def bake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[object]]:
         called.append(oven)
 
     @options.made_of_settings
+    def try_out(
+        oven: Annotated[tuple[Oven, ...], options.Each({"heat": "--heats", "half_time": "--half-time"})],
+    ) -> None:
+        """Try several."""
+        called.append(oven)
+
+    @options.made_of_settings
     def grill(oven: Annotated[Oven, options.Without(("fan", "half_time"))]) -> None:
         """Grill."""
         called.append(oven)
 
     app = typer.Typer(pretty_exceptions_enable=False)
     app.callback()(lambda: None)
-    for command in (work, warm, grill):
+    for command in (work, warm, try_out, grill):
         app.command()(command)
     monkeypatch.setattr(program, "app", app)
 
@@ -129,6 +136,33 @@ def test_a_command_may_ask_for_some_settings_only_and_in_its_own_order(
     assert "--heat" in shown
     assert "--fan" not in shown
     assert bake("warm", "--heat", "60") == [Oven(heat=60.0)]
+
+
+def test_a_list_of_values_makes_settings_for_every_combination_without_doubles(bake: Bake) -> None:
+    (ovens,) = bake("try-out", "--heats", "60, 70,60", "--half-time", "4,8", "--fan")
+    assert isinstance(ovens, tuple)
+    assert [(oven.heat, oven.half_time, oven.fan) for oven in ovens] == [
+        (60.0, 2.0, True),
+        (60.0, 4.0, True),
+        (70.0, 2.0, True),
+        (70.0, 4.0, True),
+    ]
+    assert bake("try-out")[-1] == (Oven(),)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--heats 60,hot", "--heats is a list of numbers like 1,2,5, not 'hot'.\n"),
+        ("--heats 60,20", "The heat must be between 50 C and 300 C, not 20 C.\n"),
+        ("--half-time 4,soon", "--half-time takes digits, not 'soon'.\n"),
+    ],
+)
+def test_one_wrong_value_of_a_list_is_one_sentence(
+    bake: Bake, capsys: pytest.CaptureFixture[str], words: str, said: str
+) -> None:
+    bake("try-out", *words.split(), code=2)
+    assert capsys.readouterr().err == said
 
 
 def test_help_and_refusals_wait_neither_for_the_kernel_nor_for_scipy() -> None:

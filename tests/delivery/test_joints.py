@@ -13,7 +13,7 @@ from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
-from cadpanel.brep.building.sheet import volume_of
+from cadpanel.brep.building.sheet import build_panel, volume_of
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.deliver import deliver
@@ -22,6 +22,7 @@ from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ClearModel, ReportModel, read_report, write_report
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError, SettingsError
 from cadpanel.fitting.run import fit
@@ -85,16 +86,27 @@ def test_joints_are_as_wide_as_asked_and_no_two_solids_share_volume(
     assert shared(solids) <= SHARED
 
 
-@pytest.mark.parametrize("junctions", [True, False])
 @pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
-def test_bricks_share_no_volume_whether_they_are_joined_all_round_or_row_by_row(
-    tmp_path: Path, junctions: bool, joint: float, thickness: float, skin_side: SkinSide
+def test_bricks_have_a_joint_at_every_part_of_a_side(
+    tmp_path: Path, joint: float, thickness: float, skin_side: SkinSide
 ) -> None:
     sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side)
-    report = deliver(bricks(junctions=junctions), tmp_path / "out", sheet)
-    assert len(report.seams) == (11 if junctions else 5)
+    report = deliver(bricks(junctions=True), tmp_path / "out", sheet)
+    assert len(report.seams) == 11
     assert report.certificate.clear is not None
     assert report.certificate.clear.least == pytest.approx(joint, abs=1e-6)
+    assert shared(solids_of(tmp_path / "out")) <= SHARED
+
+
+@pytest.mark.parametrize(("joint", "thickness"), [(0.0, 60.0), (20.0, 40.0)])
+def test_rows_of_bricks_that_have_no_seam_between_them_share_no_volume_either(
+    tmp_path: Path, joint: float, thickness: float
+) -> None:
+    result, sheet = bricks(junctions=False), SheetSettings(thickness=thickness, joint=joint)
+    square = [build_panel(panel.fitted, thickness).solid for panel in build_panels(result.shapes, sheet).panels]
+    assert shared({str(i): solid for i, solid in enumerate(square)}) > 1000.0
+    report = deliver(result, tmp_path / "out", sheet)
+    assert len(report.seams) == 5
     assert shared(solids_of(tmp_path / "out")) <= SHARED
 
 

@@ -18,7 +18,7 @@ from fixtures.lips import Lip
 from tests.delivered import fitted
 
 ALLOWED = 10.0
-ASKED = FitSettings(max_deviation=ALLOWED)
+ASKED = FitSettings(gap_tolerance=1.0, max_deviation=ALLOWED)
 
 
 class MadeUp:
@@ -41,9 +41,11 @@ class MadeUp:
         tell("concurrent", 1, 1.0, 1.0)
         far, gap = self.together(count), self.gap(count)
         base = fitted()
-        measures = replace(base.measures, max_deviation=np.full(3, far), seam_gap=np.full(2, gap))
+        measures = replace(
+            base.measures, max_deviation=np.full(3, far), seam_gap=np.full(2, gap), seam_step=np.full(2, gap)
+        )
         shapes = (base.shapes[0],) * count
-        held = far <= ALLOWED and gap <= how.gap_tolerance
+        held = far <= ALLOWED and gap <= how.widest_gap
         return replace(base, reference=reference, settings=how, measures=measures, shapes=shapes, tolerance_met=held)
 
 

@@ -30,8 +30,8 @@ def test_every_combination_is_there_once_and_in_order():
 
 def test_progress_is_told_as_each_fit_begins_and_goes_on():
     told = []
-    trade_off([strip], [FitSettings()], lambda how, _, step, *__: told.append((how.gap_tolerance, step)))
-    assert told[0] == (1.0, 0)
+    trade_off([strip], [FitSettings()], lambda how, _, step, *__: told.append((how.widest_gap, step)))
+    assert told[0] == (3.0, 0)
     assert len(told) > 1
 
 

@@ -211,7 +211,6 @@ THROUGH_A_DOOR = {
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.records.blanks": "tests/delivery/records/test_flat_parts.py",
     "cadpanel.delivery.records.study_rows": "tests/cli/test_study.py",
-    "cadpanel.delivery.step_proof": "tests/delivery/test_joints.py",
     "cadpanel.features.chain_shapes": "tests/features/test_panel_shapes.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",

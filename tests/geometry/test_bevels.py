@@ -1,12 +1,13 @@
-"""The bevel of an end: the angle between its wall and the sheet's normal, square to the edge."""
+"""Bevels: the angle between a wall and the sheet's normal, square to the edge."""
 
 import math
 
 import numpy as np
 import pytest
 
-from cadpanel.geometry.bevels import end_bevels
+from cadpanel.geometry.bevels import edge_bevels, end_bevels
 from tests.flat_panels import panels
+from tests.joined import leaning, quadrilaterals
 from tests.known_panels import end_curve
 from tests.shapes import folded_panel, random_panel
 
@@ -43,5 +44,25 @@ def test_the_largest_bevel_inside_of_a_bend_is_found():
     assert least == pytest.approx(min(rulings))
 
 
-def test_edges_of_polygons_are_square():
-    assert end_bevels(panels("polygon of 5", 1)[0]).shape == (0, 2)
+@pytest.mark.parametrize("depth", [-3.0, 20.0])
+def test_a_wall_that_nobody_asked_to_lean_is_square(depth):
+    polygon, chain = panels("polygon of 5", 1)[0], random_panel(3)
+    assert end_bevels(polygon).shape == (0, 2)
+    found = edge_bevels(polygon, polygon.offset(depth))
+    assert list(found) == [f"edge {i}" for i in range(5)]
+    assert np.array(list(found.values())) == pytest.approx(np.zeros((5, 2)), abs=1e-9)
+    found = edge_bevels(chain, chain.offset(depth))
+    assert list(found) == ["end 0", "end 1", "side 0", "side 1"]
+    assert np.array([found["end 0"], found["end 1"]]) == pytest.approx(end_bevels(chain))
+    assert found["side 0"] + found["side 1"] == pytest.approx((0.0,) * 4, abs=1e-9)
+
+
+@pytest.mark.parametrize("depth", [-3.0, 20.0])
+@pytest.mark.parametrize("lean", [-0.2, 0.1])
+def test_walls_that_lean_have_the_bevels_of_their_planes(depth, lean):
+    polygon, chain = quadrilaterals()[0], random_panel(5, chain="plane-cone-plane")
+    for shape, edges in ((polygon, ("edge 1", "edge 2")), (chain, ("side 0", "side 1"))):
+        cut = shape.cut_back({edge: leaning(shape, edge, 8.0, lean) for edge in edges}, depth)
+        found = edge_bevels(cut, cut.offset(depth))
+        for edge in edges:
+            assert found[edge] == pytest.approx(2 * (math.atan(lean),), abs=1e-9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +21,8 @@ from cadpanel.brep.cutting.open_closed_faces import opened
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.strip import CUT_OTHERWISE
-from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.brep.splitting.splitter import UncutError
+from cadpanel.errors import CadpanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
 
 DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
@@ -111,13 +113,36 @@ def _lengths(skin: _Skin) -> Cut:
     panels: list[CutPanel] = []
     notes: list[str] = []
     for surface in skin.surfaces:
-        if lip is None:
-            panels += cut_lengths(surface, count, source, tolerance)
-        else:
-            of_band, found = cut_lip(surface, count, lip, source, tolerance)
-            panels += of_band
-            notes += found
+        cut = partial(_cut_strip, surface, lip=lip, source=source, tolerance=tolerance)
+        try:
+            of_strip, found = cut(count)
+        except UncutError as error:
+            other = next(
+                (number for number in (count + 1, count - 1, count + 2) if number > 0 and _works(cut, number)), 0
+            )
+            if not other:
+                raise
+            raise ReferenceFileError(f"{str(error).rstrip('.')}; into {other} panels it can be cut.") from error
+        panels += of_strip
+        notes += found
     return Cut(panels=tuple(panels), notes=tuple(notes))
+
+
+def _cut_strip(
+    surface: Surface, count: int, *, lip: float | None, source: str, tolerance: float
+) -> tuple[tuple[CutPanel, ...], tuple[str, ...]]:
+    if lip is None:
+        return cut_lengths(surface, count, source, tolerance), ()
+    return cut_lip(surface, count, lip, source, tolerance)
+
+
+def _works(cut: Callable[[int], object], count: int) -> bool:
+    """Whether so many panels can be cut."""
+    try:
+        cut(count)
+    except CadpanelError:
+        return False
+    return True
 
 
 def _grid(skin: _Skin) -> Cut:

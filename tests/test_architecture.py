@@ -195,7 +195,6 @@ THROUGH_A_DOOR = {
     "cadpanel.atomic.surface": "tests/atomic/test_recovery.py",
     "cadpanel.brep.building.chain_sheet": "tests/brep/building/test_sheet.py",
     "cadpanel.brep.building.chain_skin": "tests/brep/building/test_sheet.py",
-    "cadpanel.brep.cutting.by_length": "tests/brep/cutting/test_ways.py",
     "cadpanel.brep.cutting.by_stations": "tests/brep/cutting/test_ways.py",
     "cadpanel.brep.files.brep": "tests/brep/files/test_formats.py",
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",

@@ -7,8 +7,8 @@ from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopoDS import TopoDS
 
 from cadpanel.brep.skin.belt import find_belt
-from tests.brep.cutting.test_belts import BEND, FLANGE, RADIUS, roof_edge
 from tests.cuts import surface_of
+from tests.roof_edges import BEND, FLANGE, RADIUS, roof_edge
 
 UP = gp_Dir(0.0, 0.0, 1.0)
 TURN = 2.0 * np.pi

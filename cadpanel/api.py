@@ -106,7 +106,8 @@ def fit(
 
     Args:
         reference: what is to be approximated.
-        settings: how; by default concurrent plane-cone-plane, steps of at most 3 mm, seams within 3 degrees of the drawn ones.
+        settings: how; by default concurrent plane-cone-plane, steps of at most 3 mm, seams within 3 degrees of the
+            drawn ones.
         progress: told the method, the step, the largest excess over a tolerance (1 where it holds) and the RMS
             deviation in mm; where it returns False the fit ends with the best so far.
         time_limit: seconds after which the fit ends with the best so far, which keeps all limits but perhaps gaps.

@@ -42,7 +42,8 @@ def fit(
 
     Args:
         reference: what is to be approximated.
-        settings: how; by default concurrent plane-cone-plane, steps of at most 3 mm, seams within 3 degrees of the drawn ones.
+        settings: how; by default concurrent plane-cone-plane, steps of at most 3 mm, seams within 3 degrees of the
+            drawn ones.
         progress: told of every step of the concurrent fit; False ends it.
         time_limit: seconds after which the concurrent fit ends with the best so far. What comes before it, the fits of
             every panel alone, is always finished.

@@ -24,7 +24,8 @@ def compare(
 
     Args:
         reference: what is to be approximated.
-        settings: tolerance, limits, tilt and restarts, by default `LIKE_THE_PAPER`; its feature and method are not used.
+        settings: tolerance, limits, tilt and restarts, by default `LIKE_THE_PAPER`; its feature and method are not
+            used.
         progress: told when a column begins (step 0), and of every step of a concurrent fit.
 
     Raises:

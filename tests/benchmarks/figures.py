@@ -2,8 +2,8 @@
 
     python -m tests.benchmarks.figures
 
-Fits every fixture by default and with whole gaps held at several tolerances, delivers it, verifies the folder, and prints
-one row a delivery. All numbers come from report.json and from the certificate of the files that were read back.
+Fits every fixture by default and with whole gaps held at several tolerances, delivers it, verifies the folder, and
+prints one row a delivery. All numbers come from report.json and from the certificate of the files that were read back.
 """
 
 from __future__ import annotations

@@ -27,8 +27,8 @@ from cadpanel.terms.term import HeldTerm
 # several bends scatter their corners by decimetres, and a few steps of a smooth problem gather them.
 _FIRST_GAP, _FIRST_DRIFT = 0.1, 1e-2
 _FIRST = Stopping(cost=1e-3, iterations=40)
-# Between the points that are held, arcs part a little further: they are held at this share of the tolerance.
-_ARC_SHARE = 0.82
+ARC_SHARE = 0.82
+"""Between the points that are held, arcs part a little further: they are held at this share of the tolerance."""
 # How often seams are tightened where they part still further, up to which excess that is worth trying, and to which
 # share of the tolerance.
 _TIGHTENINGS = 8
@@ -48,7 +48,7 @@ class Concurrent(Method):
         return best_of_starts(
             lambda start: _hold_seams(problem, start, local, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
-            local,
+            starts[-1],
             settings,
         )
 
@@ -62,13 +62,13 @@ def _hold_seams(
 ) -> Fitted:
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
     limits = problem.limits(settings, MARGIN)
-    gathered, iterations = _gather(problem, gaps, limits, start)
+    gathered, iterations = gather(problem, gaps, limits, start)
     state = problem.state(gathered)
     for gap in gaps:
         gap.hold.weight[:] = 0.0
         if isinstance(gap, ArcGap):
             gap.straighten(state)
-            gap.hold.radius = _ARC_SHARE * gap.hold.radius
+            gap.hold.radius = ARC_SHARE * gap.hold.radius
     model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
     found = held_within(problem, model, gathered, local=local, tell=progress)
     iterations += found.iterations
@@ -97,7 +97,7 @@ def _hold_seams(
     return Fitted(found.unknowns, iterations, stopped, gap_price=price)
 
 
-def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
+def gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
     """A few steps towards closed seams, and how many."""
     firm = [(limit, limit.hold.weight) for limit in limits if isinstance(limit, DriftTerm)]
     for gap in gaps:

@@ -15,7 +15,7 @@ from cadpanel.fitting import feature_choice
 from cadpanel.fitting.feature_choice import CHEAPEST_FIRST, Choice
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.run import fit
-from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.settings import LIKE_THE_PAPER, FitSettings
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone
 
@@ -109,17 +109,17 @@ def strip(name):
 
 
 def test_panels_that_closing_takes_too_far_get_a_closer_feature_and_no_others():
-    result = fit(strip("kai_tak_se_east"), FitSettings(feature="auto", max_deviation=40.0))
+    result = fit(strip("kai_tak_se_east"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=40.0))
     assert result.tolerance_met
     found = Counter(shape.feature for shape in result.shapes)
     assert found["plane-cylinder-plane"] >= 7
     # With a wider limit nobody is taken too far, and all keep what they have alone.
-    wide = fit(strip("kai_tak_se_east"), FitSettings(feature="auto", max_deviation=60.0))
+    wide = fit(strip("kai_tak_se_east"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=60.0))
     assert {shape.feature for shape in wide.shapes} == {"plane-cylinder-plane"}
 
 
 def test_where_no_feature_follows_closely_enough_everything_else_holds():
-    result = fit(strip("kai_tak_nw"), FitSettings(feature="auto", max_deviation=10.0))
+    result = fit(strip("kai_tak_nw"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=10.0))
     assert not result.tolerance_met
     assert result.measures.max_deviation.max() > 10.0
     assert result.measures.max_seam_gap <= 1.0

@@ -42,8 +42,8 @@ _GAIN, _HARMFUL, _READY, _SHARE_LEFT = 0.25, 1e-3, 0.1, 3e-4
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
 # Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless
-# it is this many times too long, for so many steps in all.
-_FIRMLY, _FIRM_YET, _PATIENCE = 1e-3, 1.5, 20
+# it is this many times too long.
+_FIRMLY, _FIRM_YET = 1e-3, 1.5
 # A correction longer than this share of the step is none.
 _BENT = 0.5
 # Promises below this share of the cost are rounding; a cost of this size is none.
@@ -63,11 +63,14 @@ class Limits:
         steps: at most.
         feasibility: by which share a vector may be too long.
         least_cost: below which nothing is left to gain.
+        patience: for so many steps what may give way waits for what must hold; of thousands of panels one is always
+            over, and waiting for it takes longer than it saves.
     """
 
     steps: int = 100
     feasibility: float = 1e-9
     least_cost: float = 0.0
+    patience: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +276,7 @@ class _Run:
                 return True
             self.mu = max(self.mu * _BARRIER_DROP, 0.5 * end)
         # What must hold comes first: narrowed while it does not, the others would drive it further off. It may never.
-        waits = not settled and 1.0 + _FIRMLY < self.now.firm < _FIRM_YET and self.waited < _PATIENCE
+        waits = not settled and 1.0 + _FIRMLY < self.now.firm < _FIRM_YET and self.waited < self.limits.patience
         self.waited += waits and not failed.any()
         if settled or not (failed.any() or waits):
             self.widest = max(self.widest * self.lag, target)

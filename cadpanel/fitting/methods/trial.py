@@ -20,6 +20,8 @@ from cadpanel.terms.term import HeldTerm
 
 # Steps at most, until gaps are first held and after each tightening.
 _STEPS = 60
+# Steps for which gaps wait for limits: neighbours of different features are driven into a corner otherwise.
+_PATIENCE = 20
 # How often seams are tightened that part further between the points at which they are held.
 _TIGHTENINGS = 5
 # A result that exceeds its distances by less holds them.
@@ -53,7 +55,7 @@ class Trial(Method):
 
         unknowns, stopped = model.starting_from(gathered), Stop.STALLED
         for _ in range(_TIGHTENINGS):
-            end = interior_point(model, unknowns, Limits(steps=_STEPS), tell=told)
+            end = interior_point(model, unknowns, Limits(steps=_STEPS, patience=_PATIENCE), tell=told)
             unknowns, iterations = end.best.unknowns, iterations + end.steps
             if end.told_to_stop or not _holds(end):
                 stopped = Stop.TOLD if end.told_to_stop else Stop.STALLED

@@ -26,7 +26,7 @@ from cadpanel.errors import (
 )
 
 if TYPE_CHECKING:
-    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
+    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, unroll, write_step
     from cadpanel.api_studies import fewest_panels, study
     from cadpanel.atomic.cone import fit_cone
     from cadpanel.atomic.cylinder import fit_cylinder
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from cadpanel.fitting.settings import FitSettings, Weights
     from cadpanel.geometry.patches import ConePatch, PlanePatch
     from cadpanel.geometry.shape import PanelShape, PolygonShape
+    from cadpanel.geometry.unroll import FlatPattern
     from cadpanel.reference.model import PanelReference, Reference, Seam
     from cadpanel.reference.settings import ReferenceSettings
 
@@ -59,6 +60,7 @@ __all__ = [
     "FitError",
     "FitResult",
     "FitSettings",
+    "FlatPattern",
     "Measures",
     "PanelError",
     "PanelReference",
@@ -90,13 +92,14 @@ __all__ = [
     "study",
     "to_build123d",
     "to_cadquery",
+    "unroll",
     "verify",
     "write_step",
 ]
 
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
-        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
+        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "unroll", "write_step"),
         "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
@@ -113,6 +116,7 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "fitting.settings": ("FitSettings", "Weights"),
         "geometry.patches": ("ConePatch", "PlanePatch"),
         "geometry.shape": ("PanelShape", "PolygonShape"),
+        "geometry.unroll": ("FlatPattern",),
         "reference.model": ("PanelReference", "Reference", "Seam"),
         "reference.settings": ("ReferenceSettings",),
     }

@@ -6,6 +6,7 @@ asks for help, does not wait for it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
@@ -17,8 +18,11 @@ from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import LIKE_THE_PAPER, FitKeywords, FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.unroll import FlatPattern, neutral_offset
+from cadpanel.geometry.unroll import unroll as unroll_shape
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
+from cadpanel.setting import require
 
 if TYPE_CHECKING:
     import build123d
@@ -30,6 +34,7 @@ if TYPE_CHECKING:
     from cadpanel.delivery.settings import Schema
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
+    from cadpanel.delivery.shop_settings import ShopKeywords
     from cadpanel.studies.table1 import Progress as CompareProgress
 
 
@@ -174,8 +179,9 @@ def deliver(
     schema: Schema = "AP242",
     overwrite: bool = False,
     progress: DeliveryProgress | None = None,
+    **shop: Unpack[ShopKeywords],
 ) -> ReportModel:
-    """Write a delivery folder whole or not at all: panels.step, skins.step, and report.json with the proof.
+    """Write a delivery folder whole or not at all: STEP, flat patterns, the schedule, and report.json with the proof.
 
     Args:
         result: the fitted panels.
@@ -186,21 +192,47 @@ def deliver(
         schema: of the STEP files, "AP242" or "AP214".
         overwrite: replace an existing delivery.
         progress: told the step ("compare", "build", "write", "verify"), how much of it is done, and of how much.
+        shop: the fields of `ShopSettings`: which outputs of which panels, and how drawings and schedule are made.
 
     Returns:
         What report.json holds.
 
     Raises:
-        SettingsError: the thickness, joint, side or schema is none.
+        SettingsError: the thickness, joint, side or schema is none, or there is no such output or panel.
         PanelError: a panel cannot be built.
         DeliveryError: the folder is refused or cannot be written.
         ProofError: what was written is not what was promised; nothing is left.
     """
     from cadpanel.delivery.deliver import deliver as deliver_result
     from cadpanel.delivery.settings import SheetSettings
+    from cadpanel.delivery.shop_settings import ShopSettings
 
     sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
-    return deliver_result(result, Path(out), sheet, overwrite=overwrite, progress=progress)
+    asked = ShopSettings(**cast("dict[str, Any]", shop))
+    return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)
+
+
+def unroll(
+    shape: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer", k_factor: float = 0.5
+) -> FlatPattern:
+    """One panel as a flat sheet seen from outside: outline, tangent lines and rulings, exactly.
+
+    Args:
+        shape: one of a result's shapes, which is unrolled whole: nothing is cut off it for joints.
+        thickness: of the sheet, mm.
+        skin_side: "outer" or "inner".
+        k_factor: distance of the surface that keeps its lengths from the inner face of the bends, as a share of the
+            thickness; flat panels have the middle of the sheet with 0.5.
+
+    Raises:
+        PanelError: the panel bends both ways, and the K-factor is not 0.5.
+        SettingsError: the thickness, side or K-factor is none.
+    """
+    from cadpanel.delivery.settings import SheetSettings
+
+    sheet = SheetSettings(thickness=thickness, skin_side=skin_side)
+    require("K-factor", k_factor, least=0.0, most=1.0)
+    return unroll_shape(shape, neutral_offset(shape, sheet.thickness, sheet.skin_side, k_factor))
 
 
 def to_cadquery(
@@ -256,7 +288,7 @@ def to_build123d(
 
 
 def write_step(
-    panels: FitResult | Panel,
+    result: FitResult | Panel,
     path: str | Path,
     *,
     thickness: float = 3.0,
@@ -264,27 +296,34 @@ def write_step(
     skin_side: SkinSide = "outer",
     skins: bool = False,
     schema: Schema = "AP242",
+    panels: Sequence[str] = (),
 ) -> None:
     """Write one STEP file, one product a panel with its name; for a folder with the proof beside it, see `deliver`.
 
     Args:
-        panels: a result, or one of its shapes.
+        result: a result, or one of its shapes.
         path: the file; one that is there is replaced once the new one is complete.
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
         skins: write the skins as open shells instead of the solids.
         schema: "AP242" or "AP214".
+        panels: names of those that are written, * for anything; all if empty.
 
     Raises:
         PanelError: a panel cannot be built.
         DeliveryError: the file cannot be written.
-        SettingsError: the thickness, joint, side or schema is none.
+        SettingsError: the thickness, joint, side or schema is none, or there is no panel of such a name.
     """
+    from cadpanel.delivery.chosen_panels import chosen_panels
     from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 
-    built = _build(panels, thickness, joint, skin_side, schema)
-    (write_skins if skins else write_solids)(Path(path), built, _title(panels), schema)
+    names = [shape.name for shape in result.shapes] if isinstance(result, FitResult) else [result.name]
+    chosen = set(chosen_panels(names, [panels] if isinstance(panels, str) else panels))
+    # All of them are built: a panel's neighbours say how it is cut.
+    built = _build(result, thickness, joint, skin_side, schema)
+    own = [panel for panel in built if panel.shape.name in chosen]
+    (write_skins if skins else write_solids)(Path(path), own, _title(result), schema)
 
 
 def _build(

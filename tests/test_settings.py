@@ -23,6 +23,7 @@ from cadpanel.delivery.records.report import ReferenceModel, read_report
 from cadpanel.delivery.records.settings import OF_A_COLUMN, ComparisonSettingsModel, SettingsModel, settings_record
 from cadpanel.delivery.records.table1 import comparison_record
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopKeywords, ShopSettings
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Plane
 from cadpanel.fitting.bends.asked import Blend
@@ -49,14 +50,17 @@ def names(settings: type[Any]) -> set[str]:
     return {one.name for one in fields(settings)}
 
 
-FIT, READ, SHEET = names(FitSettings), names(ReferenceSettings), names(SheetSettings)
+FIT, READ, SHEET, SHOP = map(names, (FitSettings, ReferenceSettings, SheetSettings, ShopSettings))
+
+
+ALL_SETTINGS = (FitSettings, ReferenceSettings, SheetSettings, ShopSettings)
 
 
 def options(command: Callable[..., None]) -> set[str]:
     return set(signature(command).parameters)
 
 
-@pytest.mark.parametrize("settings", [FitSettings, ReferenceSettings, SheetSettings])
+@pytest.mark.parametrize("settings", [FitSettings, ReferenceSettings, SheetSettings, ShopSettings])
 def test_every_setting_says_how_it_is_asked_for(settings: type[Any]) -> None:
     for field, option in options_of(settings):
         assert option.help.endswith((".", "?", "...")), field.name
@@ -66,6 +70,7 @@ def test_every_setting_says_how_it_is_asked_for(settings: type[Any]) -> None:
 def test_keywords_are_the_fields() -> None:
     assert set(FitKeywords.__annotations__) == FIT
     assert set(ReferenceKeywords.__annotations__) == READ
+    assert set(ShopKeywords.__annotations__) == SHOP
 
 
 def test_the_limits_that_can_be_set_are_fields_with_their_defaults() -> None:
@@ -78,7 +83,7 @@ def test_the_limits_that_can_be_set_are_fields_with_their_defaults() -> None:
 
 def test_the_reports_settings_are_those_of_the_fit_and_of_the_sheet() -> None:
     sheet = SHEET - {"schema"} | {SCHEMA}
-    assert set(SettingsModel.model_fields) == FIT | sheet | OF_THE_RECORD | OF_THE_READING | {"gaps"}
+    assert set(SettingsModel.model_fields) == FIT | sheet | SHOP | OF_THE_RECORD | OF_THE_READING | {"gaps"}
 
 
 def test_the_comparisons_settings_are_those_that_all_columns_share() -> None:
@@ -87,8 +92,8 @@ def test_the_comparisons_settings_are_those_that_all_columns_share() -> None:
 
 
 def test_the_options_are_the_settings() -> None:
-    assert options(fit) == FIT | READ | SHEET | OF_THE_COMMAND | {"reference"}
-    assert options(compare) == options(fit) - SHEET - set(OF_A_COLUMN) - {"time_limit"}
+    assert options(fit) == FIT | READ | SHEET | SHOP | OF_THE_COMMAND | {"reference"}
+    assert options(compare) == options(fit) - SHEET - SHOP - set(OF_A_COLUMN) - {"time_limit"}
     assert options(study) == options(compare) - {"weights"} | {"feature", "max_deviation"}
     assert options(inspect) == {"file", "unit", "faces", "seam_tolerance", "as_json"}
 
@@ -108,7 +113,7 @@ def readme_table() -> dict[str, str]:
 def test_the_readmes_table_lists_the_options_with_their_defaults() -> None:
     stated = readme_table()
     assert {flag.replace("-", "_") for flag in stated} == options(fit) - {"reference", "out"}
-    for field, option in (pair for of in (FitSettings, ReferenceSettings, SheetSettings) for pair in options_of(of)):
+    for field, option in (pair for of in ALL_SETTINGS for pair in options_of(of)):
         if isinstance(field.default, float | int | str) and not isinstance(field.default, bool):
             shown = field.default if option.show is None else option.show(field.default)
             said = stated[field.name.replace("_", "-")]
@@ -150,15 +155,18 @@ def test_settings_are_read_back_from_a_comparison_as_they_were_asked_for(tmp_pat
 
 def test_a_fit_is_run_again_from_its_report_with_the_same_numbers(tmp_path: Path) -> None:
     sheet = SheetSettings(thickness=2.0, skin_side="inner", schema="AP214")
+    shop = ShopSettings(
+        outputs="flats", only="N 2", k_factor=0.4, stock=[(3000.0, 6000.0)], dxf_layers=[("CUT", "0")], density=7850.0
+    )
     for name in ("first", "again"):
         settings = ASKED if name == "first" else asked_again(read_report(tmp_path / "first" / "report.json").settings)
         assert settings == ASKED
-        deliver(fit_reference(strip(), settings), tmp_path / name, sheet)
+        deliver(fit_reference(strip(), settings), tmp_path / name, sheet, shop)
     first, again = (json.loads((tmp_path / name / "report.json").read_text("utf-8")) for name in ("first", "again"))
     assert first.pop("timing") != again.pop("timing")
     assert first == again
     kept = read_report(tmp_path / "again" / "report.json").settings
-    assert SheetSettings(thickness=kept.thickness, skin_side=kept.skin_side, schema=kept.step_schema) == sheet
+    assert (kept.sheet(), kept.shop()) == (sheet, shop)
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
         if how.way is None:
             raise
         raise error.of_a_cut() from error
-    return replace(reference, notes=(*reference.notes, *raw.notes), settings=how)
+    return replace(reference, notes=(*reference.notes, *raw.notes), settings=how, origin=raw.origin)
 
 
 def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None) -> RawReference:

@@ -6,7 +6,7 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import typer
 
@@ -15,9 +15,13 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.interrupt import first_interrupt_ends
 from cadpanel.cli.steps import Steps, steps
+from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.outputs.catalogue import chosen_outputs
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.delivery.source_date import source_date
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
@@ -25,6 +29,14 @@ from cadpanel.reference.texts import AUTO
 
 if TYPE_CHECKING:
     from cadpanel.reference.model import Reference
+
+
+class Asked(NamedTuple):
+    """What is to be delivered."""
+
+    sheet: SheetSettings
+    shop: ShopSettings
+
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
 
@@ -35,6 +47,7 @@ def fit(
     out: options.Out,
     settings: FitSettings,
     sheet: SheetSettings,
+    shop: ShopSettings,
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
@@ -45,33 +58,40 @@ def fit(
     The smallest deviation is found at which every gap stays within --gap-tolerance. Ctrl-C while all panels are fitted
     at once delivers the best so far, a second one leaves nothing.
 
-    Exit codes: 0 all is well; 1 it ran, but the tolerance or the proof does not hold; 2 refused.
+    Exit codes: 0 all is well; 1 it ran, but the tolerance, the stock or the proof does not hold; 2 refused.
     """
     began = time.perf_counter()
+    chosen_outputs(shop.outputs)  # refused before anything else is done, and so is a date that is none
+    source_date()
     with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
         run = _find if how.divide == AUTO else _run
-        report, shortfall = run(reference, how, settings, sheet, folder, shown, time_limit)
+        report, shortfall = run(reference, how, settings, Asked(sheet, shop), folder, shown, time_limit)
     if not quiet:
         # The tables are for people; numbers for programs are in report.json.
         from cadpanel.cli.tables import print_report
 
         print_report(report, out, time.perf_counter() - began)
     if shortfall is not None:
-        words = " ".join(shortfall.split())  # on one line, whatever the panels' names hold
-        sys.stderr.write(f"{words[0].upper()}{words[1:]}.\n")
+        sys.stderr.write(f"{shortfall}.\n")
         raise typer.Exit(1)
+
+
+def _sentence(said: str) -> str:
+    """On one line, whatever the panels' names hold."""
+    words = " ".join(said.split())
+    return f"{words[0].upper()}{words[1:]}"
 
 
 def _run(
     file: Path,
     how: ReferenceSettings,
     settings: FitSettings,
-    sheet: SheetSettings,
+    asked: Asked,
     folder: Path,
     shown: Steps,
     time_limit: float | None,
 ) -> tuple[ReportModel, str | None]:
-    """Read, fit, build, write and verify; the report, and what the tolerance lacks."""
+    """Read, fit, build, write and verify; the report, and what the tolerance or the stock lacks."""
     shown.begin(_READ, file.name)
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
     require_files(file, how)
@@ -83,6 +103,7 @@ def _run(
     began = time.perf_counter()
     reference = read_reference(file, how)
     seconds_to_read = time.perf_counter() - began
+    chosen_panels([panel.name for panel in reference.panels], asked.shop.only)  # refused before the fit
     shown.begin(_FIRST)
     with first_interrupt_ends() as interrupted:
 
@@ -91,15 +112,25 @@ def _run(
             return not interrupted.heard()
 
         result = fit_reference(reference, settings, tell, time_limit=time_limit)
-    report = fill_delivery(result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
-    return report, result.shortfall()
+    report = fill_delivery(
+        result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
+    )
+    return report, _lacking(result.shortfall(), report)
+
+
+def _lacking(shortfall: str | None, report: ReportModel) -> str | None:
+    """What the tolerance and the stock lack, in sentences."""
+    from cadpanel.delivery.records.stock import stock_shortfall
+
+    said = [sentence for sentence in (shortfall, stock_shortfall(report)) if sentence is not None]
+    return ". ".join(_sentence(words) for words in said) or None
 
 
 def _find(
     file: Path,
     how: ReferenceSettings,
     settings: FitSettings,
-    sheet: SheetSettings,
+    asked: Asked,
     folder: Path,
     shown: Steps,
     time_limit: float | None,
@@ -133,5 +164,7 @@ def _find(
             return not interrupted.heard()
 
         found = fewest_panels(read, settings, progress=tell, time_limit=time_limit)
-    report = fill_delivery(found.result, folder, sheet, seconds_to_read=seconds_to_read, progress=shown.count)
-    return report, found.shortfall()
+    report = fill_delivery(
+        found.result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
+    )
+    return report, _lacking(found.shortfall(), report)

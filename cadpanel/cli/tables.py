@@ -174,6 +174,14 @@ def print_certificate(certificate: CertificateModel, heading: str) -> None:
         f"seams open by at most {length(certificate.max_seam_gap)} mm in the files{_joints(certificate)}."
     )
     console().print(Text(f"{heading}: {said}"))
+    drawn = certificate.outputs.get("flats")
+    if drawn is not None:
+        said = (
+            f"{counted(round(drawn['drawings']), 'drawing')}, {counted(round(drawn['audit_errors']), 'fault')} in "
+            f"ezdxf's audit, areas to {certificate.flat_area_error:.1g}, edges to "
+            f"{certificate.flat_length_error:.1g} mm, contours within {drawn['contour_error']:.2g} mm."
+        )
+        console().print(Text(f"Flat patterns: {said}"))
 
 
 def _joints(certificate: CertificateModel) -> str:

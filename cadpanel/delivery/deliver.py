@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
+from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.folder import REPORT, delivery_folder
-from cadpanel.delivery.outputs.catalogue import OUTPUTS
-from cadpanel.delivery.outputs.output import Delivery
+from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
+from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.outputs.step_files import SKINS
+from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.from_fit import (
     baselines_record,
+    origin_record,
     panel_records,
     reference_record,
     seam_records,
     solve_record,
+    with_flat_parts,
 )
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, TimingModel, write_report
 from cadpanel.delivery.records.settings import settings_record
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import Progress, build_panels, say_nothing
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import prove
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
@@ -32,32 +38,36 @@ def deliver(
     result: FitResult,
     out: Path,
     sheet: SheetSettings | None = None,
+    shop: ShopSettings | None = None,
     *,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> ReportModel:
-    """Write a delivery folder whole or not at all: panels.step, skins.step and report.json.
+    """Write a delivery folder whole or not at all: panels.step, skins.step, report.json, and what else is asked for.
 
     Args:
         result: the fitted panels.
         out: the folder; an existing one is refused unless `overwrite` is set.
         sheet: thickness, side and schema.
+        shop: outputs and panels that are asked for, and how they are made.
         overwrite: replace an existing delivery.
         progress: told of the steps "compare", "build", "write" and "verify".
 
     Raises:
+        SettingsError: there is no output or panel of a name that is asked for.
         PanelError: a panel cannot be built.
         DeliveryError: the folder is refused or cannot be written.
         ProofError: what was written is not what was promised; nothing is left.
     """
     with delivery_folder(out, overwrite=overwrite) as folder:
-        return fill_delivery(result, folder, sheet or SheetSettings(), progress=progress)
+        return fill_delivery(result, folder, sheet or SheetSettings(), shop or ShopSettings(), progress=progress)
 
 
 def fill_delivery(
     result: FitResult,
     folder: Path,
     sheet: SheetSettings,
+    shop: ShopSettings,
     *,
     seconds_to_read: float = 0.0,
     progress: Progress | None = None,
@@ -68,38 +78,53 @@ def fill_delivery(
         result: the fitted panels.
         folder: as `delivery_folder` gives it.
         sheet: thickness, side and schema.
+        shop: outputs and panels that are asked for, and how they are made.
         seconds_to_read: how long reading the reference took, for the report.
         progress: told of the steps.
     """
     tell = progress or say_nothing
-    with second_interpreter(len(result.shapes)) as helper:
+    outputs = chosen_outputs(shop.outputs, OUTPUTS)
+    chosen = set(chosen_panels([shape.name for shape in result.shapes], shop.only))
+    with second_interpreter(len(chosen)) as helper:
         began = time.perf_counter()
         tell("compare", 0, 1)
         baselines = baselines_record(result)
         tell("compare", 1, 1)
         compared_at = time.perf_counter()
         built = build_panels(result.shapes, sheet, result.reference.seams, tell)
-        panels = panel_records(result, built)
+        parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
+        panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
         seams = seam_records(result.reference, result.measures, built.joints)
         built_at = time.perf_counter()
-        delivery = Delivery(panels=built.panels, title=Path(result.reference.source).stem, sheet=sheet)
-        _write(folder, delivery, tell, helper)
+        own = [place for place, panel in enumerate(panels) if panel.name in chosen]
+        delivery = Delivery(
+            panels=tuple(built.panels[place] for place in own),
+            title=Path(result.reference.source).stem,
+            sheet=sheet,
+            shop=shop,
+            records=tuple(panels[place] for place in own),
+            seams=seams,
+            parts=tuple(parts[place] for place in own),
+            joint=sheet.joint,
+            origin=result.reference.origin,
+        )
+        _write(folder, delivery, outputs, tell, helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        settings = settings_record(result.reference, result.settings, sheet)
-        proof = prove(folder, panels, seams, settings, helper)
+        proved = prove(folder, delivery, outputs, helper)
     verified_at = time.perf_counter()
-    _demand(proof.certificate)
+    _demand(proved.certificate)
     report = ReportModel(
         reference=reference_record(result.reference),
-        settings=settings,
+        origin=origin_record(result.reference, shop.origin),
+        settings=settings_record(result.reference, result.settings, sheet, shop),
         solve=solve_record(result),
         panels=panels,
-        seams=proof.seams,
+        seams=proved.seams,
         features=dict(Counter(panel.feature for panel in panels)),
         summary=summary(result.measures, result.local, result.settings),
         baselines=baselines,
-        certificate=proof.certificate,
+        certificate=proved.certificate,
         timing=TimingModel(
             read=seconds_to_read,
             fit=result.seconds + compared_at - began,
@@ -113,15 +138,14 @@ def fill_delivery(
     return report
 
 
-def _write(folder: Path, delivery: Delivery, tell: Progress, helper: Helper | None) -> None:
-    """Every output that is always there; a helper reads the skins while the others are being written."""
-    wanted = [output for output in OUTPUTS if output.always]
-    for place, output in enumerate(wanted):
-        tell("write", place, len(wanted))
+def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Progress, helper: Helper | None) -> None:
+    """Every output that is asked for; a helper reads the skins while the others are being written."""
+    for place, output in enumerate(outputs):
+        tell("write", place, len(outputs))
         output.write(folder, delivery)
         if helper is not None and SKINS in output.files:
             helper.begin(folder / SKINS)
-    tell("write", len(wanted), len(wanted))
+    tell("write", len(outputs), len(outputs))
 
 
 def _demand(certificate: CertificateModel) -> None:

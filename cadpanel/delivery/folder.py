@@ -29,6 +29,8 @@ OWN_FILES = frozenset(
     {REPORT, COMPARISON, STUDY, STUDY_TABLE, *STUDY_PLOTS, *(name for output in OUTPUTS for name in output.files)}
 )
 """All that cadpanel writes; whatever else stands in a delivery is someone's work and is never deleted."""
+OWN_FOLDERS = {folder: mark for output in OUTPUTS for folder, mark in output.folders.items()}
+"""Folders that cadpanel writes, and how every file in one of them begins."""
 LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave in a folder that people look into; it goes with the delivery."""
 
@@ -88,9 +90,10 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
                 f"'{target}' holds files but no {' or '.join(MARKS_OF_A_DELIVERY)} of cadpanel, so it is not a "
                 "delivery and is not overwritten: name another folder."
             )
-        if names - OWN_FILES:
+        strange = names - OWN_FILES - OWN_FOLDERS.keys() | _strangers(place)
+        if strange:
             raise DeliveryError(
-                f"'{target}' also holds '{min(names - OWN_FILES)}', which cadpanel did not write and --overwrite would "
+                f"'{target}' also holds '{min(strange)}', which cadpanel did not write and --overwrite would "
                 "delete: move it elsewhere, or name another folder."
             )
     except DeliveryError:
@@ -99,6 +102,24 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
         return  # nothing there; whether it can be made is for _make_parents to say
     except OSError as error:
         raise DeliveryError(_sentence(target, error)) from error
+
+
+def _strangers(place: Path) -> set[str]:
+    """What stands in the folders that cadpanel writes and does not begin as its own files do."""
+    found: set[str] = set()
+    for folder, mark in OWN_FOLDERS.items():
+        if not (place / folder).is_dir():
+            found |= {folder} if os.path.lexists(place / folder) else set()
+            continue
+        for entry in (place / folder).iterdir():
+            if entry.name not in LITTER and not (entry.is_file() and _begins(entry, mark)):
+                found.add(f"{folder}/{entry.name}")
+    return found
+
+
+def _begins(path: Path, mark: bytes) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(mark)) == mark
 
 
 def _is_mark(path: Path) -> bool:

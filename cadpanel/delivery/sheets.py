@@ -13,7 +13,7 @@ from cadpanel.geometry.edge_planes import SeamEdges
 from cadpanel.geometry.joint_widths import widest_joint
 from cadpanel.geometry.joints import Joint, Jointed, cut_to_seams
 from cadpanel.geometry.panel import Panel, Straightened
-from cadpanel.geometry.sheet_checks import sheet_depth
+from cadpanel.geometry.sheet_checks import other_face, sheet_depth
 from cadpanel.geometry.volume import sheet_volume
 from cadpanel.reference.model import Seam
 
@@ -30,6 +30,7 @@ class PanelSheet:
         shape: the panel as it is built: a cone that is all but a cylinder has become one, and it is cut back from its
             seams by half a joint.
         fitted: the same before it was cut back.
+        other: the sheet's other face.
         solid: the sheet.
         skin: the open shell that approximates the reference.
         area: of the skin, mm^2.
@@ -40,6 +41,7 @@ class PanelSheet:
 
     shape: Panel
     fitted: Panel
+    other: Panel
     solid: Solid
     skin: Shell
     area: float
@@ -121,6 +123,7 @@ def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) ->
     return PanelSheet(
         shape=shape,
         fitted=straight.shape,
+        other=other_face(shape, sheet.thickness, sheet.skin_side),
         solid=built.solid,
         skin=built.skin,
         area=shape.area(),

@@ -1,6 +1,6 @@
 """What is to be approximated, as arrays only: panels of sampled faces, their outlines, and who meets whom.
 
-All lengths are in millimetres, in the coordinates of the file.
+All lengths are in millimetres, in the coordinates of the file, less an origin where it lies far away.
 """
 
 from __future__ import annotations
@@ -140,6 +140,7 @@ class Reference:
         seam_tolerance: how far the edges of two panels that meet were allowed to lie apart, mm.
         notes: what was mended, moved, guessed or left out on the way from the file, one sentence each.
         settings: how the file was read and cut.
+        origin: what was taken off all coordinates of the file, mm.
     """
 
     source: str
@@ -148,3 +149,4 @@ class Reference:
     seam_tolerance: float = 1.0
     notes: tuple[str, ...] = ()
     settings: ReferenceSettings = field(default_factory=ReferenceSettings)
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)

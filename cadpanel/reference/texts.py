@@ -17,8 +17,12 @@ CHOICE = re.compile(
 )
 
 
-def choices_of(text: str) -> tuple[str, ...]:
-    """The choices of faces in a text with commas between them: '3, layer="Skin, north"' are 3 and layer=Skin, north.
+def choices_of(text: str, what: str = "faces") -> tuple[str, ...]:
+    """The choices in a text with commas between them: '3, layer="Skin, north"' are 3 and layer=Skin, north.
+
+    Args:
+        text: as users write it.
+        what: is chosen, for messages.
 
     Raises:
         SettingsError: a quotation mark is not closed, or something follows it.
@@ -28,7 +32,7 @@ def choices_of(text: str) -> tuple[str, ...]:
         choice = CHOICE.match(text, start)
         if choice is None:
             raise SettingsError(
-                f"faces: the quotation marks in {text!r} do not enclose one choice each; write them like "
+                f"{what}: the quotation marks in {text!r} do not enclose one choice each; write them like "
                 '\'"Roof, north",layer="Skin, east",3\''
             )
         quoted = choice["quoted"]

@@ -4,7 +4,8 @@
 
 A strip of that many panels is written as STEP like the fixtures and fitted panel by panel; neither is timed.
 Timed are reading that file, building the sheets, writing both files of the delivery and proving them, and, in the same
-process, OCCT's XCAF writer with names and its own settings (AP242, parameter curves on) on the same solids.
+process, OCCT's XCAF writer with names and its own settings (AP242, parameter curves on) on the same solids; and then
+what a shop gets besides STEP, which does not count among what is together.
 The processor's seconds stand beside those of the clock: on a machine that others use, only they can be compared. They
 count the second interpreters in full, their start included; the clock does not see what they do beside the first one.
 """
@@ -17,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from shutil import rmtree
 from typing import NamedTuple, TypeVar
 
 from OCP.IFSelect import IFSelect_RetDone
@@ -34,9 +36,16 @@ from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.output import Delivery
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_skins, write_solids
+from cadpanel.delivery.records.flat_parts import flat_parts
+from cadpanel.delivery.records.from_fit import with_flat_parts
+from cadpanel.delivery.records.from_shape import patch_models, rows
+from cadpanel.delivery.records.report import PanelModel, SeamModel
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import FOUR_EDGES, PanelSheet, build_panels
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
 from cadpanel.fitting.settings import FitSettings
@@ -51,6 +60,10 @@ Result = TypeVar("Result")
 
 # A strip may turn by so much over its whole length without meeting itself, degrees.
 WHOLE_TURN = 270.0
+UNMEASURED = (
+    *("rms_deviation", "max_deviation", "hausdorff"),
+    *("max_corner_drift", "max_drift_along", "max_free_edge_drift"),
+)
 
 
 def strip(panels: int) -> Lip:
@@ -172,7 +185,64 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
     if not certificate.holds:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")
     timed(seconds, "XCAF writer", lambda: write_bare(folder / "bare.step", built))
+    for_the_shop(seconds, folder, reference, built)
     return seconds
+
+
+def for_the_shop(seconds: dict[str, Took], folder: Path, reference: Reference, built: Sequence[PanelSheet]) -> None:
+    """What a shop gets besides STEP: flat parts, every other output, and the proof of them."""
+    sheet, shop = SheetSettings(), ShopSettings()
+    parts = timed(seconds, "flat parts", lambda: flat_parts([one.shape for one in built], sheet, shop))
+    records = with_flat_parts([record(one) for one in built], built, parts, shop.density)
+    delivery = Delivery(
+        panels=tuple(built),
+        title="strip",
+        sheet=sheet,
+        shop=shop,
+        records=records,
+        seams=seams_of(reference),
+        parts=parts,
+    )
+    for output in OUTPUTS:
+        if not output.always:
+            for name in output.folders:
+                rmtree(folder / name, ignore_errors=True)
+            timed(seconds, f"write {output.name}", lambda output=output: output.write(folder, delivery))  # type: ignore[misc]
+    for output in OUTPUTS:
+        if not output.always:
+            proof = timed(seconds, f"prove {output.name}", lambda output=output: output.prove(folder, delivery))  # type: ignore[misc]
+            if proof.failures:
+                raise SystemExit(f"the proof fails: {proof.failures[0]}")
+
+
+def record(built: PanelSheet) -> PanelModel:
+    """A record of a panel whose fit nobody has measured."""
+    told = {
+        "name": built.shape.name,
+        "feature": built.shape.feature,
+        "corners": rows(built.shape.corners()),
+        "patches": patch_models(built.shape),
+        "area": built.area,
+        "volume": built.volume,
+    }
+    return PanelModel.model_validate({**told, **dict.fromkeys(UNMEASURED, 0.0)})
+
+
+def seams_of(reference: Reference) -> tuple[SeamModel, ...]:
+    """Which panels meet; how well, nobody has measured."""
+    names = [panel.name for panel in reference.panels]
+    return tuple(
+        SeamModel(
+            panels=(names[seam.panels[0]], names[seam.panels[1]]),
+            edges=(FOUR_EDGES[seam.edges[0]], FOUR_EDGES[seam.edges[1]]),
+            reversed=seam.reversed,
+            corner_gaps=(0.0,),
+            max_corner_gap=0.0,
+            max_seam_gap=0.0,
+            max_kink=0.0,
+        )
+        for seam in reference.seams
+    )
 
 
 def main() -> None:
@@ -191,7 +261,8 @@ def main() -> None:
 def print_table(panels: int, seconds: dict[str, Took]) -> None:
     """Seconds of every step, and how many times those of the bare writer they are."""
     bare = seconds["XCAF writer"]
-    whole = [took for step, took in seconds.items() if step != "XCAF writer"]
+    steps = list(seconds)
+    whole = [seconds[step] for step in steps[: steps.index("XCAF writer")]]
     together = Took(sum(took.clock for took in whole), sum(took.processor for took in whole))
     print(f"{panels:>6} panels   clock s   times    processor s   times")
     for step, took in (*seconds.items(), ("together", together)):

@@ -212,6 +212,8 @@ def test_moving_the_file_moves_the_reference(folder, lips, angle, shift):
     path = write_products(folder / "moved.step", [(name, moved(shape, angle, (shift,) * 3)) for name, shape in lips])
     reference = read_reference(path)
     assert len(reference.seams) == 3
+    assert any(reference.origin) == (shift > 1e6)
+    assert np.abs(np.array(reference.origin) - shift).max() < 2e5
     still = read_reference(write_products(folder / "still.step", lips))
     for there, here in zip(reference.panels, still.panels, strict=True):
         assert there.length == pytest.approx(here.length, abs=1e-3)

@@ -19,7 +19,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.outputs.step_files import write_solids
+from cadpanel.delivery.outputs.step_files import Place, write_solids
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.sheets import PanelSheet
@@ -31,7 +31,14 @@ PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
 # ------------------------------------------------------------------------------------------------------- it goes well
 def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
-    assert sorted(path.name for path in delivered.iterdir()) == ["panels.step", "report.json", "skins.step"]
+    assert sorted(path.name for path in delivered.iterdir()) == [
+        "flat",
+        "panels.step",
+        "report.json",
+        "schedule.csv",
+        "setting_out.csv",
+        "skins.step",
+    ]
     assert list(delivered.parent.iterdir()) == [delivered]
 
 
@@ -78,7 +85,15 @@ def test_the_report_says_what_was_taken_for_what_and_the_user_may_override_it(
 def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, lip_step: Path, tmp_path: Path) -> None:
     answer = run("fit", lip_step, "--out", tmp_path / "out")
     assert answer.code == 0
-    for words in ("Largest corner gap, mm", "Hausdorff", "two-stage", "Certificate: 3 solids valid", "tmp", "Written"):
+    for words in (
+        "Largest corner gap, mm",
+        "Hausdorff",
+        "two-stage",
+        "Certificate: 3 solids valid",
+        "tmp",
+        "Written",
+        "4 drawings",
+    ):
         assert words in answer.out
     assert answer.err == ""
 
@@ -95,6 +110,9 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         " --skin-side inner"
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
         " --blend 500-900 --blend N-02=45-62.5%"
+        " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
+        " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
+        " --stock 1500x3000,2500x4000 --facet-height 0.3"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code in (0, 1), answer.err
@@ -127,6 +145,19 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "joint": 2.0,
         "skin_side": "inner",
         "step_schema": "AP214",
+        "outputs": ["step", "flats"],
+        "only": ["N-01", "*3"],
+        "origin": "keep",
+        "k_factor": 0.4,
+        "chord": 0.02,
+        "roll_pitch": 80.0,
+        "dxf_entities": "lines",
+        "dxf_layers": [["CUT", "0"], ["BEND", "Folds"]],
+        "dxf_contour_only": True,
+        "dxf_name_length": 20,
+        "density": 7850.0,
+        "stock": [[1500.0, 3000.0], [2500.0, 4000.0]],
+        "facet_height": 0.3,
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -172,8 +203,8 @@ def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_s
 def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema) -> None:
-        write_solids(path, panels[:-1], title, schema)
+    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place) -> None:
+        write_solids(path, panels[:-1], title, schema, placed)
 
     monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")
@@ -344,3 +375,47 @@ def test_what_goes_to_a_file_is_plain_text(lip_step: Path, tmp_path: Path) -> No
     assert answer.stderr == ""
     assert "\x1b" not in answer.stdout
     assert max(map(len, answer.stdout.splitlines())) <= 200
+
+
+def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_delivered(
+    run: Run, lip_step: Path, tmp_path: Path
+) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--quiet", "--stock", "1000x2000")
+    assert answer.code == 1
+    assert answer.is_one_sentence()
+    assert "3 of 3 blanks fit no sheet of 1000x2000 mm: 'N-01' (" in answer.err
+    assert run("verify", tmp_path / "out").code == 0
+    answer = run("fit", lip_step, "--out", tmp_path / "out", "--quiet", "--stock", "1000x2000,2500x3000", "--overwrite")
+    assert (answer.code, answer.err) == (0, "")
+    panels = read_report(tmp_path / "out" / "report.json").panels
+    assert {panel.blank.stock for panel in panels if panel.blank is not None} == {"2500x3000"}
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out, xlsx."),
+        ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
+        ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
+        ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),
+        ("--k-factor 2", "The K-factor must be between 0 and 1, not 2."),
+    ],
+)
+def test_what_cannot_be_delivered_is_refused_before_the_fit(
+    run: Run, lip_step: Path, tmp_path: Path, words: str, said: str
+) -> None:
+    answer = run("fit", lip_step, "--out", tmp_path / "out", *words.split())
+    assert (answer.code, answer.err) == (2, f"{said}\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_date_that_is_none_is_refused_before_the_fit(
+    run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "today")
+    answer = run("fit", lip_step, "--out", tmp_path / "out")
+    assert (answer.code, answer.err) == (
+        2,
+        "SOURCE_DATE_EPOCH must be a number of seconds since 1970, not 'today'.\n",
+    )
+    assert list(tmp_path.iterdir()) == []

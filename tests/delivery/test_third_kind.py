@@ -15,6 +15,7 @@ from cadpanel.features.polygon import Polygon
 from cadpanel.fitting.start.begin import frames_and_numbers
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import check_buildable, other_face
+from cadpanel.geometry.unroll import unroll_polygons, unroller
 from cadpanel.geometry.volume import sheet_volume
 from tests.known_panels import alone
 from tests.third_kind import Regular, RegularShape, regular, start_regular
@@ -36,6 +37,7 @@ def entries() -> None:
     skin_faces.register(RegularShape, lambda panel: polygon_skin(panel.as_polygon()))
     sheet_faces.register(RegularShape, lambda near, far: polygon_sheet(near.as_polygon(), far.as_polygon()))
     patch_models.register(RegularShape, lambda panel: patch_models(panel.as_polygon()))
+    unroller.register(RegularShape, lambda _: lambda shapes: unroll_polygons([one.as_polygon() for one in shapes]))
 
 
 def test_where_a_kind_has_no_entry_the_place_says_so() -> None:
@@ -49,6 +51,7 @@ def test_where_a_kind_has_no_entry_the_place_says_so() -> None:
         lambda: sheet_faces(panel, panel),
         lambda: patch_models(panel),
         lambda: frames_and_numbers(panel, panel),
+        lambda: unroller(panel),
     ):
         with pytest.raises(TypeError, match="register one for its class"):
             ask()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from OCP.Standard import Standard_Failure
@@ -36,10 +36,12 @@ class RawReference:
     Attributes:
         panels: sampled faces, panel by panel, mm.
         notes: what was mended or moved, and what should be known of the file, one sentence each.
+        origin: what was taken off all coordinates of the file, mm.
     """
 
     panels: tuple[RawPanel, ...]
     notes: tuple[str, ...]
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | None = None) -> RawReference:
@@ -59,8 +61,9 @@ def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | N
     """
     if isinstance(found, Products):
         panels, mended = _mended(found.shapes, found.source, how.seam_tolerance)
-        return RawReference(panels=panels, notes=(*found.notes, *mended))
-    return _part_panels(found, how) if how.way is None else _cut_panels(found, how, drawn)
+        return RawReference(panels=panels, notes=(*found.notes, *mended), origin=found.origin)
+    raw = _part_panels(found, how) if how.way is None else _cut_panels(found, how, drawn)
+    return replace(raw, origin=found.origin)
 
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:

@@ -166,7 +166,7 @@ def _load_products(path: Path, millimetres: float | None) -> Products:
         return found
     back = (-origin[0], -origin[1], -origin[2])
     shapes = tuple(replace(product, shape=shifted(product.shape, back)) for product in found.shapes)
-    return replace(found, shapes=shapes, notes=(*found.notes, origin_note(path.name, origin)))
+    return replace(found, shapes=shapes, notes=(*found.notes, origin_note(path.name, origin)), origin=origin)
 
 
 def _near_origin(model: Model) -> Model:

@@ -206,9 +206,11 @@ class Products:
         shapes: placed, in file order, mm.
         unit: the file's unit of length in its own words; None where it says none.
         notes: what was done to it or should be known of it, one sentence each.
+        origin: what was taken off all coordinates of the file, mm.
     """
 
     source: str
     shapes: tuple[NamedShape, ...]
     unit: str | None
     notes: tuple[str, ...] = ()
+    origin: tuple[float, float, float] = (0.0, 0.0, 0.0)

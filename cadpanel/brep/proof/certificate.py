@@ -17,6 +17,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.clearances import Clear, clearances
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
+from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
 from cadpanel.brep.proof.overlaps import unparted
 from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files
 from cadpanel.brep.proof.seam_gaps import seam_gaps
@@ -46,6 +47,8 @@ class Certificate:
         face_kinds: number of faces of each kind among the solids.
         max_tangency_error: greatest angle in radians between neighbouring patches, solids and skins.
         volume_error: greatest relative difference of a solid's volume from the expected one.
+        flat_area_error: greatest relative difference of a flat pattern's area from that of the surface in the solid.
+        flat_length_error: greatest difference of an edge's length, unrolled, from that on the skin, mm.
         names_kept: whether both files hold exactly the expected names, each once.
         max_corner_error: farthest corner of a skin from where it is expected, mm.
         seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
@@ -62,6 +65,8 @@ class Certificate:
     face_kinds: dict[str, int]
     max_tangency_error: float
     volume_error: float
+    flat_area_error: float
+    flat_length_error: float
     names_kept: bool
     max_corner_error: float
     seam_gaps: tuple[float, ...]
@@ -107,13 +112,20 @@ def certify(
         for found, label in ((solids, "solid"), (skins, "skin"))
     ]
     volume_error, corner_error = 0.0, 0.0
+    flats: list[FlatFacts] = []
     for panel in panels:
         if panel.name in solid_of:
             volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
         if panel.name in skin_of:
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
+        for label, found in (("solid", solid_of), ("skin", skin_of)):
+            if panel.name in found:
+                _check_placed(panel, label, found[panel.name], failures)
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
+            if panel.flat is not None:
+                flats.append(FlatFacts(panel.flat, panel.far_planes, solid_of[panel.name], skin_of[panel.name]))
+    flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)
     clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)
     overlap = None if joint is None else _overlap(panels_step, solids, failures)
@@ -127,6 +139,8 @@ def certify(
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
         max_tangency_error=max(angles),
         volume_error=volume_error,
+        flat_area_error=flat_errors[0],
+        flat_length_error=flat_errors[1],
         names_kept=names_kept,
         max_corner_error=corner_error,
         seam_gaps=tuple(gaps),
@@ -232,6 +246,13 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
     }
     failures += [f"Panel '{panel.name}': its skin {problem}." for problem, present in problems.items() if present]
     return error
+
+
+def _check_placed(panel: ExpectedPanel, label: str, facts: ShapeFacts, failures: list[str]) -> None:
+    """The origin of its coordinates must lie where it is expected; a millimetre on a map is the last digit but six."""
+    apart = float(np.abs(facts.placed - panel.placed).max())
+    if not apart <= POSITION_LIMIT:
+        failures.append(f"Panel '{panel.name}': its {label} is placed {apart:.3g} mm away from where it is expected.")
 
 
 def _described(kinds: dict[str, int]) -> str:

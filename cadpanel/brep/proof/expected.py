@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.proof.flat_checks import ExpectedFlat
 
 PatchKind = Literal["plane", "cone", "cylinder"]
 
@@ -36,6 +37,8 @@ class ExpectedPanel:
         corners: (2, k + 1, 3) corners of the skin at end 0 and end 1, or (1, n, 3) those of a polygon, mm.
         far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
         fitted: the panel before it was cut back; None where it was not.
+        flat: what its flat pattern says; None to leave it alone.
+        placed: where the origin of its coordinates lies in both files, mm.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -46,6 +49,8 @@ class ExpectedPanel:
     corners: Array
     far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
     fitted: Fitted | None = None
+    flat: ExpectedFlat | None = None
+    placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

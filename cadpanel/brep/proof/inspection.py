@@ -11,10 +11,13 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
 from OCP.TopExp import TopExp
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
@@ -25,6 +28,8 @@ from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.brep.step.file import OpenStep, open_step
 from cadpanel.geometry.curve_pieces import CurvePieces
 
+# By so many radians nothing as large as a panel is turned.
+_NO_TURN = 1e-13
 _ROUND = {GeomAbs_Cone: "cone", GeomAbs_Cylinder: "cylinder"}
 
 
@@ -80,7 +85,8 @@ def inspect_packed(shapes: Sequence[tuple[str, bytes]]) -> list[ShapeFacts]:
 
 
 def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
-    """Measure one shape; slow only in the kernel's own check, 1 to 6 ms a panel."""
+    """Measure one shape; slow only in the kernel's own check, 1 to 6 ms a panel, and areas, 2 ms."""
+    shape, placed = _at_home(shape)
     faces = faces_of(shape)
     surfaces = [_surface(face) for face in faces]
     kinds = Counter(kind for kind, _ in surfaces)
@@ -94,12 +100,14 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     solids = len(shapes_of(shape, TopAbs_SOLID))
     return ShapeFacts(
         name=name,
+        placed=placed,
         solids=solids,
         shells=len(shapes_of(shape, TopAbs_SHELL)),
         valid=BRepCheck_Analyzer(shape, True, False, True).IsValid(),
         closed=all(len(owners) == 2 for _, owners in edges),
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
         volume=volume_of(shape) if solids else 0.0,
+        areas=np.array([_area(face) for face in faces], dtype=np.float64),
         straight_edges=np.array([ends for ends, _ in straight]).reshape(-1, 2, 3),
         edge_surfaces=np.array([pair for _, pair in straight]).reshape(-1, 2, 9),
         vertices=_vertices(shape),
@@ -109,6 +117,21 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         other_edges=lies_on[~known],
         surfaces=np.array([numbers or [np.nan] * 9 for _, numbers in surfaces]).reshape(-1, 9),
     )
+
+
+def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:
+    """A shape in its own coordinates, and where their origin lies; one that is turned as well is left as it is."""
+    location = shape.Location().Transformation()
+    turn = [[location.VectorialPart().Value(row, column) for column in (1, 2, 3)] for row in (1, 2, 3)]
+    if np.abs(np.array(turn) - np.eye(3)).max() > _NO_TURN:
+        return shape, np.zeros(3)
+    return shape.Located(TopLoc_Location()), np.array(location.TranslationPart().Coord())
+
+
+def _area(face: TopoDS_Face) -> float:
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(face, properties)
+    return float(properties.Mass())
 
 
 def _vertices(shape: TopoDS_Shape) -> Array:

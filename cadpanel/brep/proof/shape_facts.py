@@ -21,12 +21,14 @@ class ShapeFacts:
 
     Attributes:
         name: the product's name.
+        placed: (3,) where the origin of its coordinates lies in the file, mm; all else is told in its own coordinates.
         solids: number of solids in it.
         shells: number of shells in it.
         valid: whether the kernel's exact check passes.
         closed: whether every edge belongs to exactly two faces.
         face_kinds: number of faces of each of FACE_KINDS.
         volume: the kernel's volume, mm3; 0 for a shape without solids.
+        areas: (f,) the kernel's area of every face, mm2.
         straight_edges: (m, 2, 3) ends of the straight edges that two known faces share, mm.
         edge_surfaces: (m, 2, 9) the two surfaces: point on axis or plane, axis or plane normal, radius, half angle,
             and +1 or -1 by which the surface's own normal becomes the face's. A plane has radius 0.
@@ -39,12 +41,14 @@ class ShapeFacts:
     """
 
     name: str
+    placed: Array
     solids: int
     shells: int
     valid: bool
     closed: bool
     face_kinds: dict[str, int]
     volume: float
+    areas: Array
     straight_edges: Array
     edge_surfaces: Array
     vertices: Array

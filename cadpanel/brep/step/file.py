@@ -26,7 +26,12 @@ NamedShape = tuple[str, TopoDS_Shape, Color | None]
 
 
 def write_step(
-    path: str | os.PathLike[str], shapes: Sequence[NamedShape], *, title: str, schema: Schema = "AP242"
+    path: str | os.PathLike[str],
+    shapes: Sequence[NamedShape],
+    *,
+    title: str,
+    schema: Schema = "AP242",
+    placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> None:
     """Write a flat assembly, one product a shape with its name and colour, whole or not at all.
 
@@ -36,13 +41,15 @@ def write_step(
             Names must differ.
         title: name of the assembly.
         schema: "AP242" or "AP214".
+        placed: where the origin of the shapes' coordinates lies in the assembly, mm. Their own numbers stay small: far
+            from the origin the kernel's checks lose their digits.
 
     Raises:
         DeliveryError: if the file cannot be written, or a shape has other than plane, cone and cylinder faces.
     """
     target = Path(path)
     try:
-        text = step_file(shapes, title, schema)
+        text = step_file(shapes, title, schema, placed)
     except UnsupportedGeometry as error:
         raise DeliveryError(f"{target} cannot be written: it would hold {error}, not an exact panel.") from error
     _write_whole(target, text)

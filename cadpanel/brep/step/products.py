@@ -32,16 +32,19 @@ UNCERTAINTY = 1e-7
 
 
 def step_file(
-    shapes: Sequence[tuple[str, TopoDS_Shape, tuple[float, float, float] | None]], title: str, schema: Schema
+    shapes: Sequence[tuple[str, TopoDS_Shape, tuple[float, float, float] | None]],
+    title: str,
+    schema: Schema,
+    placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> str:
-    """The whole file.
+    """The whole file, the origin of the shapes' coordinates placed somewhere in the assembly, mm.
 
     Raises:
         UnsupportedGeometry: if a shape is not made of exact panels' geometry.
     """
     text = StepText()
     schema_name, protocol, application = _SCHEMAS[schema]
-    frame = _Frame(text, protocol, application)
+    frame = _Frame(text, protocol, application, placed)
     assembly = frame.product(title, "SHAPE_REPRESENTATION", [frame.origin])
     styled = []
     for number, (name, shape, color) in enumerate(shapes, start=1):
@@ -68,7 +71,7 @@ def _header(title: str, schema_name: str) -> str:
 class _Frame:
     """What all products of a file share: contexts, units, origin, colours."""
 
-    def __init__(self, text: StepText, protocol: str, application: str) -> None:
+    def __init__(self, text: StepText, protocol: str, application: str, placed: tuple[float, float, float]) -> None:
         self._text = text
         self._styles: dict[tuple[float, float, float], int] = {}
         add = text.add
@@ -87,10 +90,11 @@ class _Frame:
             f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
             f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid_angle}))REPRESENTATION_CONTEXT('',''))"
         )
-        self.origin = self._placement()
+        self.origin = self._placement((0.0, 0.0, 0.0))
+        self._place = self._placement(placed) if any(placed) else self.origin
 
-    def _placement(self) -> int:
-        point = self._text.add("CARTESIAN_POINT('',(0.,0.,0.))")
+    def _placement(self, place: tuple[float, float, float]) -> int:
+        point = self._text.add(f"CARTESIAN_POINT('',({','.join(real(float(part)) for part in place)}))")
         z_axis = self._text.add("DIRECTION('',(0.,0.,1.))")
         x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
         return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
@@ -108,14 +112,14 @@ class _Frame:
         return definition, representation
 
     def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str) -> None:
-        """Put a part into the assembly where it is: both origins coincide."""
+        """Put a part into the assembly, its origin where that of all parts lies there."""
         add = self._text.add
         usage = add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)")
         placed = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})")
-        identity = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{self.origin})")
+        moved = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{self._place})")
         relation = add(
             f"(REPRESENTATION_RELATIONSHIP('','',#{part[1]},#{assembly[1]})"
-            f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{identity})SHAPE_REPRESENTATION_RELATIONSHIP())"
+            f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{moved})SHAPE_REPRESENTATION_RELATIONSHIP())"
         )
         add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{placed})")
 

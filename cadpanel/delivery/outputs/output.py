@@ -1,33 +1,29 @@
-"""What an output of a delivery is: which files it writes, and how."""
+"""What an output of a delivery is: which files it writes, and how; and how they are held against the report."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.contents import Contents, Proof
 
-if TYPE_CHECKING:
-    from cadpanel.delivery.sheets import (
-        PanelSheet,  # the kernel takes seconds to load, and a refusal asks for names only
-    )
+if TYPE_CHECKING:  # the kernel takes seconds to load, and a refusal asks for names only
+    from cadpanel.delivery.sheets import PanelSheet
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Delivery:
+class Delivery(Contents):
     """What outputs are made of.
 
     Attributes:
-        panels: the sheets as they were built.
-        title: the reference's name without its ending.
-        sheet: thickness, side and schema.
+        panels: the sheets that are delivered, as they were built.
     """
 
     panels: tuple[PanelSheet, ...]
-    title: str
-    sheet: SheetSettings
 
 
 class Output(ABC):
@@ -38,12 +34,18 @@ class Output(ABC):
     Attributes:
         name: what it is called.
         files: the names of all files that it may write; --overwrite deletes these and no others.
+        folders: of those that it may write, each with the bytes that every file in it begins with.
         always: whether every delivery has it.
+        unasked: whether a delivery has it where nothing else is asked for.
+        needs: the package that it needs besides, an extra of the same name as the output; None where it needs none.
     """
 
     name: str
     files: tuple[str, ...]
+    folders: Mapping[str, bytes] = MappingProxyType({})
     always: bool = False
+    unasked: bool = True
+    needs: str | None = None
 
     @abstractmethod
     def write(self, folder: Path, delivery: Delivery) -> None:
@@ -52,3 +54,12 @@ class Output(ABC):
         Raises:
             DeliveryError: one of them cannot be written.
         """
+
+    def prove(self, folder: Path, contents: Contents) -> Proof:
+        """Hold the files against what they should tell; STEP files are proved by the certificate.
+
+        Raises:
+            DeliveryError: one of them is missing or cannot be read.
+        """
+        del folder, contents
+        return Proof()

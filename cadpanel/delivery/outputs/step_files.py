@@ -15,6 +15,10 @@ if TYPE_CHECKING:
 
 PANELS = "panels.step"
 SKINS = "skins.step"
+STEP = "step"
+"""What both are called together where outputs are chosen; they are always there."""
+Place = tuple[float, float, float]
+AT_HOME: Place = (0.0, 0.0, 0.0)
 PALETTE: tuple[Color, ...] = (
     (0.62, 0.68, 0.73),
     (0.76, 0.72, 0.65),
@@ -33,7 +37,7 @@ class PanelsStep(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        write_solids(folder / PANELS, delivery.panels, delivery.title, delivery.sheet.schema)
+        write_solids(folder / PANELS, delivery.panels, delivery.title, delivery.sheet.schema, delivery.placed)
 
 
 class SkinsStep(Output):
@@ -45,11 +49,13 @@ class SkinsStep(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        write_skins(folder / SKINS, delivery.panels, delivery.title, delivery.sheet.schema)
+        write_skins(folder / SKINS, delivery.panels, delivery.title, delivery.sheet.schema, delivery.placed)
 
 
-def write_solids(path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242") -> None:
-    """Write one solid a panel.
+def write_solids(
+    path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242", placed: Place = AT_HOME
+) -> None:
+    """Write one solid a panel; the origin of their coordinates is placed somewhere in the assembly, mm.
 
     Raises:
         DeliveryError: the file cannot be written.
@@ -57,11 +63,13 @@ def write_solids(path: Path, panels: Sequence[PanelSheet], title: str, schema: S
     from cadpanel.brep.step.file import write_step
 
     shapes = [(panel.shape.name, panel.solid, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{title} panels", schema=schema)
+    write_step(path, shapes, title=f"{title} panels", schema=schema, placed=placed)
 
 
-def write_skins(path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242") -> None:
-    """Write one open shell a panel, under the same names and in the same colours.
+def write_skins(
+    path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242", placed: Place = AT_HOME
+) -> None:
+    """Write one open shell a panel, under the same names, in the same colours and at the same place.
 
     Raises:
         DeliveryError: the file cannot be written.
@@ -69,7 +77,7 @@ def write_skins(path: Path, panels: Sequence[PanelSheet], title: str, schema: Sc
     from cadpanel.brep.step.file import write_step
 
     shapes = [(panel.shape.name, panel.skin, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{title} skins", schema=schema)
+    write_step(path, shapes, title=f"{title} skins", schema=schema, placed=placed)
 
 
 def colour(place: int) -> Color:

@@ -220,7 +220,13 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
             yield f"The certificate in the report says {key} = {was}, the files show {now}."
     if stated.failures:
         yield f"The certificate in the report lists what does not hold: {stated.failures[0]}"
-    for key, limit in (("max_tangency_error", 1e-9), ("volume_error", 1e-9), ("max_seam_gap", SAME_LENGTH)):
+    for key, limit in (
+        ("max_tangency_error", 1e-9),
+        ("volume_error", 1e-9),
+        ("flat_area_error", 1e-9),
+        ("flat_length_error", SAME_LENGTH),
+        ("max_seam_gap", SAME_LENGTH),
+    ):
         was, now = getattr(stated, key), getattr(found, key)
         if not abs(was - now) <= limit:
             yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."

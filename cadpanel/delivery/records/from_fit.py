@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from cadpanel.delivery.records.from_shape import cut_model, fitted_model, patch_models, rows
+from cadpanel.delivery.records.flat_parts import FlatPart
+from cadpanel.delivery.records.from_shape import cut_model, cut_models, fitted_model, patch_models, rows
 from cadpanel.delivery.records.report import (
     BaselinesModel,
+    OriginModel,
     PanelModel,
     ReferenceModel,
     SeamModel,
@@ -19,6 +21,7 @@ from cadpanel.delivery.records.report import (
 )
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.sheets import FOUR_EDGES, Built, PanelSheet
+from cadpanel.delivery.shop_settings import Origin
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import missed_blend, taken
 from cadpanel.fitting.measures.fit import Measures
@@ -30,6 +33,8 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 # An outline this part of the panel's length farther from the drawing's than corners and surface are is worth a note.
 WORTH_A_NOTE = 0.02
+KG_PER_MM3 = 1e-9
+"""What a mm3 weighs at a density of 1 kg/m3."""
 # What saves less RMS deviation, mm a unit, costs nothing.
 _FREE = 1e-6
 
@@ -43,6 +48,11 @@ def reference_record(reference: Reference) -> ReferenceModel:
         notes=reference.notes,
         reading=_reading(reference.settings),
     )
+
+
+def origin_record(reference: Reference, origin: Origin) -> OriginModel:
+    """Where the fit's coordinates lie in the model's, and which of them STEP files have."""
+    return OriginModel(kept=origin == "keep" or not any(reference.origin), offset=reference.origin)
 
 
 def _reading(settings: ReferenceSettings) -> dict[str, Setting]:
@@ -81,6 +91,25 @@ def panel_records(result: FitResult, built: Built) -> tuple[PanelModel, ...]:
     return tuple(
         _panel(result, index, reference, panel)
         for index, (reference, panel) in enumerate(zip(result.reference.panels, built.panels, strict=True))
+    )
+
+
+def with_flat_parts(
+    records: Sequence[PanelModel], built: Sequence[PanelSheet], parts: Sequence[FlatPart], density: float
+) -> tuple[PanelModel, ...]:
+    """Records that say besides how every panel is cut, bent, and how heavy it is at a density in kg/m3."""
+    return tuple(
+        record.model_copy(
+            update={
+                "blank": part.blank,
+                "mass": panel.volume * density * KG_PER_MM3,
+                "bends": part.bends,
+                "other_face": rows(panel.other.corners()),
+                "cuts": cut_models(panel.shape),
+                "bevels": part.bevels,
+            }
+        )
+        for record, panel, part in zip(records, built, parts, strict=True)
     )
 
 

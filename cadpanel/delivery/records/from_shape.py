@@ -8,9 +8,10 @@ from functools import singledispatch
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.delivery.records.blanks import CutModel
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
-from cadpanel.delivery.records.report import CutModel, FittedModel
+from cadpanel.delivery.records.report import FittedModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
@@ -46,8 +47,12 @@ def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
 
 def fitted_model(shape: Panel) -> FittedModel:
     """A panel as it was fitted: its corners, and the planes that cut its ends."""
-    cuts = tuple(cut_model(point, normal) for point, normal in zip(*shape.cuts(), strict=True))
-    return FittedModel(corners=rows(shape.corners()), cuts=cuts)
+    return FittedModel(corners=rows(shape.corners()), cuts=cut_models(shape))
+
+
+def cut_models(shape: Panel) -> tuple[CutModel, ...]:
+    """The planes that cut a panel's ends."""
+    return tuple(cut_model(point, normal) for point, normal in zip(*shape.cuts(), strict=True))
 
 
 def cut_model(point: Array, normal: Array) -> CutModel:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
 
+Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]

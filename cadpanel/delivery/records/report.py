@@ -11,9 +11,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from cadpanel.delivery.records.blanks import BendModel, BlankModel, CutModel, Pair
 from cadpanel.delivery.records.jsonfile import (
     NonNegative,
     NonNegativeCount,
+    Positive,
     Record,
     Vector,
     read_json,
@@ -26,7 +28,6 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 Edge = Annotated[str, Field(pattern=r"^(end [01]|side [01]|edge \d+)$")]
 Setting = bool | str | int | float | tuple[str | int | float, ...]
-Positive = Annotated[float, Field(gt=0.0)]
 
 
 class UnitsModel(Record):
@@ -53,6 +54,18 @@ class ReferenceModel(Record):
     reading: dict[str, Setting] = Field(default_factory=dict)
 
 
+class OriginModel(Record):
+    """Where the coordinates of this report and of local files lie in the model's.
+
+    Attributes:
+        kept: whether the STEP files have the model's own coordinates.
+        offset: what has to be added to local coordinates, mm; whole metres.
+    """
+
+    kept: bool = True
+    offset: Vector = (0.0, 0.0, 0.0)
+
+
 class SolveModel(Record):
     """How the result was reached.
 
@@ -69,13 +82,6 @@ class SolveModel(Record):
     starts: NonNegativeCount
     agreed: NonNegativeCount
     prices: dict[str, NonNegative] = Field(default_factory=dict)
-
-
-class CutModel(Record):
-    """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
-
-    normal: Vector
-    offset: float
 
 
 class FittedModel(Record):
@@ -119,6 +125,14 @@ class PanelModel(Record):
             along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
         notes: what the fabricator should know, one sentence each; also of a bend that is not where it was told to be.
+        blank: the panel as a flat part; None in reports from before it was known, as are the next ones.
+        mass: of the sheet, kg.
+        bends: its curved patches in the order of the walk, as they are bent.
+        other_face: corners of the sheet's other face, in the same rows as those of the skin: by them the walls at its
+            sides, or of a polygon, may lean.
+        cuts: the planes in which its ends lie; none of a polygon.
+        bevels: of each edge the least and the largest angle between wall and sheet normal, square to the edge; positive
+            where the outer face is the shorter one. Along straight edges both are one; 0 where the wall is square.
     """
 
     name: str
@@ -137,6 +151,12 @@ class PanelModel(Record):
     taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
+    blank: BlankModel | None = None
+    mass: Positive | None = None
+    bends: tuple[BendModel, ...] = ()
+    other_face: tuple[tuple[Vector, ...], ...] = ()
+    cuts: tuple[CutModel, ...] = ()
+    bevels: dict[Edge, Pair] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:
@@ -170,7 +190,8 @@ class SeamModel(Record):
             joints.
         recut: how far a corner of either edge was from that plane, at most, mm: so far the edges were moved to lie in
             it; the same.
-        clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same.
+        clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same, and None
+            where one of the panels is not delivered.
     """
 
     panels: tuple[str, str]
@@ -250,11 +271,15 @@ class CertificateModel(Record):
         face_kinds: how many faces of each kind the panels' main faces are.
         max_tangency_error: largest angle between two patches across their common ruling, RADIANS.
         volume_error: largest relative difference between a solid's volume and the formula's.
+        flat_area_error: largest relative difference between a flat pattern's area and that of the surface in the solid
+            that it unrolls.
+        flat_length_error: largest difference between an edge of a skin and the same edge unrolled, mm.
         names_kept: whether every panel was found again under its name.
         max_seam_gap: mm, measured on the faces that were read, carried on to where the fit has cut them.
         clear: the least and the largest clear width of all joints, mm; None without seams.
         overlap: the largest volume that two solids share, mm^3; 0 where a plane parts every two. None in reports from
             before joints were proved.
+        outputs: what the files of other outputs showed, by the output's name.
         failures: what does not hold, one sentence each; empty where everything does.
     """
 
@@ -264,10 +289,13 @@ class CertificateModel(Record):
     face_kinds: dict[str, NonNegativeCount]
     max_tangency_error: NonNegative
     volume_error: NonNegative
+    flat_area_error: NonNegative = 0.0
+    flat_length_error: NonNegative = 0.0
     names_kept: bool
     max_seam_gap: NonNegative
     clear: ClearModel | None = None
     overlap: NonNegative | None = None
+    outputs: dict[str, dict[str, NonNegative]] = Field(default_factory=dict)
     failures: tuple[str, ...] = ()
 
 
@@ -290,6 +318,7 @@ class ReportModel(Record):
     schema_name: Literal["cadpanel.report/1"] = Field(default="cadpanel.report/1", alias="schema")
     units: UnitsModel = UnitsModel()
     reference: ReferenceModel
+    origin: OriginModel = OriginModel()
     settings: SettingsModel
     solve: SolveModel
     panels: tuple[PanelModel, ...]

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Record, with_keys
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.settings import FitSettings, Weights
@@ -81,6 +82,16 @@ class SettingsModel(ComparisonSettingsModel):
             nothing is said of sheets that overlap, either.
         skin_side: "outer" where the skin is the sheet's outer face.
         step_schema: of the STEP files.
+        outputs: those that were asked for; None for all that need no asking.
+        only: the panels that were asked for; all if empty.
+        origin: "keep" where STEP files lie where the model does.
+        k_factor: where the sheet keeps its lengths, a share of the thickness from the inner face of bends.
+        chord: how far arcs in drawings may lie from the exact contour, mm.
+        roll_pitch: largest distance between rulings, mm.
+        dxf_entities, dxf_layers, dxf_contour_only, dxf_name_length: how drawings are made.
+        density: of the material, kg/m3.
+        stock: sheets of the store, mm.
+        facet_height: of bends that are pressed, mm.
     """
 
     feature: str
@@ -91,14 +102,44 @@ class SettingsModel(ComparisonSettingsModel):
     joint: NonNegative | None = None
     skin_side: Literal["outer", "inner"]
     step_schema: Literal["AP242", "AP214"]
+    outputs: tuple[str, ...] | None = None
+    only: tuple[str, ...] = ()
+    origin: Literal["local", "keep"] = "local"
+    k_factor: NonNegative = 0.5
+    chord: NonNegative = 0.01
+    roll_pitch: NonNegative = 50.0
+    dxf_entities: Literal["polyline", "lines"] = "polyline"
+    dxf_layers: tuple[tuple[str, str], ...] = ()
+    dxf_contour_only: bool = False
+    dxf_name_length: NonNegativeCount = 80
+    density: NonNegative = 2700.0
+    stock: tuple[tuple[float, float], ...] = ()
+    facet_height: NonNegative = 0.5
+
+    def sheet(self) -> SheetSettings:
+        """The settings of the sheet, as they were asked for."""
+        return SheetSettings(
+            thickness=self.thickness, joint=self.joint or 0.0, skin_side=self.skin_side, schema=self.step_schema
+        )
+
+    def shop(self) -> ShopSettings:
+        """The settings of the rest of the delivery, as they were asked for."""
+        return ShopSettings(**{one.name: getattr(self, one.name) for one in fields(ShopSettings)})
 
 
-def settings_record(reference: Reference, settings: FitSettings, sheet: SheetSettings) -> SettingsModel:
+def settings_record(
+    reference: Reference, settings: FitSettings, sheet: SheetSettings, shop: ShopSettings | None = None
+) -> SettingsModel:
     """The settings of one fit and its delivery."""
     feature = settings.feature
     composition = tuple(map(repr, feature.patches)) if isinstance(feature, PanelFeature) else None
     return SettingsModel.model_validate(
-        {**_of_fit(reference, settings), "composition": composition, **_plain_fields(sheet)}
+        {
+            **_of_fit(reference, settings),
+            "composition": composition,
+            **_plain_fields(sheet),
+            **_plain_fields(shop or ShopSettings()),
+        }
     )
 
 

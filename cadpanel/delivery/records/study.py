@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Record, read_json, write_json
-from cadpanel.delivery.records.report import Positive, ReferenceModel, SummaryModel, UnitsModel
+from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Positive, Record, read_json, write_json
+from cadpanel.delivery.records.report import ReferenceModel, SummaryModel, UnitsModel
 from cadpanel.delivery.records.settings import ComparisonSettingsModel
 from cadpanel.errors import DeliveryError
 

@@ -44,6 +44,9 @@ def test_map_grid_coordinates_give_the_same_panels_and_a_note(tmp_path):
     for here, there in zip(near.panels, far.panels, strict=True):
         assert here.name == there.name
         assert there.length == pytest.approx(here.length, abs=1e-4)
+        there_in_the_model = there.corners + np.array(far.origin)
+        assert np.abs(there_in_the_model - FAR - here.corners).max() < 1e-3
+    assert near.origin == (0.0, 0.0, 0.0)
     assert far.seams == near.seams
 
 

@@ -168,3 +168,20 @@ def test_strings_are_encoded_as_the_standard_says():
     assert string("it's") == "'it''s'"
     assert string("a\\b") == "'a\\\\b'"
     assert string("ä面🏗") == "'\\X2\\00E4\\X0\\\\X2\\9762\\X0\\\\X4\\0001F3D7\\X0\\'"
+
+
+def test_shapes_are_placed_in_the_assembly_and_keep_their_own_numbers(tmp_path, panels):
+    far = (8.3e8, -2.1e8, 1000.0)
+    solids = [(panel.name, build_solid(panel, 3.0), BLUE) for panel in panels[:2]]
+    write_step(tmp_path / "here.step", solids, title="t")
+    write_step(tmp_path / "there.step", solids, title="t", placed=far)
+    for (name, here), (same, there) in zip(
+        *(read_step_shapes(tmp_path / file) for file in ("here.step", "there.step")), strict=True
+    ):
+        one, other = inspect(name, here), inspect(same, there)
+        assert name == same
+        assert tuple(one.placed) == (0.0, 0.0, 0.0)
+        assert tuple(other.placed) == far
+        assert other.valid
+        assert np.array_equal(one.vertices, other.vertices)
+        assert one.volume == other.volume

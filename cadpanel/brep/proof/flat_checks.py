@@ -1,0 +1,104 @@
+"""Flat patterns against the solids and skins in the files: the areas that they unroll, and the lengths of edges.
+
+The surface at a share x of the sheet's thickness, counted from the skin, has an area that is a quadratic in x (lengths
+along a generatrix and local widths are linear in it, and so are the places of walls, which are planes). The kernel's
+areas of both faces and its volume tell it: with D = A(1) - A(0) and M = volume / thickness - A(0),
+A(x) = A(0) + (6 M - 2 D) x + (3 D - 6 M) x^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.brep.proof.shape_facts import ShapeFacts
+from cadpanel.geometry.curve_pieces import CurvePieces
+
+AREA_LIMIT = 1e-9
+"""Relative difference between a flat pattern's area and that of the surface that it unrolls."""
+LENGTH_LIMIT = 1e-6
+"""Difference in mm between an edge on the skin and the same edge unrolled."""
+_SAME_PLANE = 1e-6
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExpectedFlat:
+    """What a panel's flat pattern says.
+
+    Attributes:
+        area: inside its contour, mm2.
+        share: where the surface that it unrolls lies, from the skin into the sheet, a part of the thickness.
+        depth: the thickness, negative where the sheet lies against the skin's normals, mm.
+        skin_pieces: lengths of all pieces of the skin's own outline, unrolled, mm.
+    """
+
+    area: float
+    share: float
+    depth: float
+    skin_pieces: Array
+
+
+class FlatFacts(NamedTuple):
+    """A flat pattern, the planes of the far faces, and what was found in the files."""
+
+    expected: ExpectedFlat
+    far_planes: Array
+    solid: ShapeFacts
+    skin: ShapeFacts
+
+
+def check_flats(panels: Sequence[FlatFacts], failures: list[str]) -> tuple[float, float]:
+    """The greatest relative error of an area, and of a length in mm; what is too large becomes a sentence.
+
+    Where there is nothing to measure the sentence says so, and nothing counts.
+    """
+    area_error, length_error = 0.0, 0.0
+    for panel in panels:
+        name, expected = panel.skin.name, panel.expected
+        found = _area_at(panel)
+        error = abs(expected.area / found - 1.0) if found > 0.0 else np.inf
+        area_error = max(area_error, error if found > 0.0 else 0.0)
+        if not error <= AREA_LIMIT:
+            failures.append(
+                f"Panel '{name}': its flat pattern has an area of {expected.area:.12g} mm2, the solid {found:.12g}."
+            )
+        own, wanted = np.sort(_lengths(panel.skin.pieces.take(panel.skin.border))), np.sort(expected.skin_pieces)
+        alike = len(own) == len(wanted)
+        error = float(np.abs(own - wanted).max(initial=0.0)) if alike else np.inf
+        length_error = max(length_error, error if alike else 0.0)
+        if not error <= LENGTH_LIMIT:
+            failures.append(f"Panel '{name}': an edge of its skin is {error:.3g} mm longer or shorter when it is flat.")
+    return area_error, length_error
+
+
+def _area_at(panel: FlatFacts) -> float:
+    """Area of the surface that is unrolled, from the kernel's numbers."""
+    near, share, depth = float(panel.skin.areas.sum()), panel.expected.share, panel.expected.depth
+    both = float(panel.solid.areas[_main_faces(panel.solid, panel.far_planes, depth)].sum())
+    across, mean = both - 2.0 * near, panel.solid.volume / abs(depth) - near
+    return near + (6.0 * mean - 2.0 * across) * share + (3.0 * across - 6.0 * mean) * share**2
+
+
+def _main_faces(solid: ShapeFacts, far_planes: Array, depth: float) -> Array:
+    """(f,) which faces are no walls: round ones, and those in the planes of flat patches, near or far."""
+    normals, points = far_planes[:, 1], far_planes[:, 0]
+    flat = (solid.surfaces[:, 6:8] == 0.0).all(axis=1)
+    turned = np.linalg.norm(np.cross(solid.surfaces[:, None, 3:6], normals), axis=-1) <= _SAME_PLANE
+    heights = np.einsum("fpx,px->fp", solid.surfaces[:, None, :3] - points, normals)
+    level = np.minimum(np.abs(heights), np.abs(heights + depth)) <= _SAME_PLANE
+    return np.asarray(~flat | (turned & level).any(axis=-1))
+
+
+def _lengths(border: CurvePieces) -> Array:
+    """(b,) lengths of segments and arcs of ellipses, mm, the latter by quadrature to rounding error."""
+    span = border.stops - border.starts
+    angles = border.starts[:, None] + 0.5 * span[:, None] * (1.0 + _NODES)
+    cosine, sine = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    speed = np.linalg.norm(cosine * border.sine_axes[:, None] - sine * border.cosine_axes[:, None], axis=-1)
+    arcs = 0.5 * span * (speed @ _WEIGHTS)
+    return np.asarray(np.where(border.arcs, arcs, span * np.linalg.norm(border.cosine_axes, axis=-1)))

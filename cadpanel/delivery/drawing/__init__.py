@@ -1,0 +1,1 @@
+"""Flat patterns as drawings: what is drawn of a panel, how it is marked, DXF as it is written and read back."""

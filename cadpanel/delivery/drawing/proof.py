@@ -1,0 +1,206 @@
+"""Drawings read back: is what is cut the exact contour, do the bends lie where they should, does ezdxf find a fault?
+
+The frames of all drawings of a delivery are the same bytes, so that one audit of the drawing with all parts stands for
+every file; the entities of each are read and measured.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.delivery.contents import Contents, Proof
+from cadpanel.delivery.drawing.dxf import MARK
+from cadpanel.delivery.drawing.part import bend_lines, roll_lines
+from cadpanel.delivery.records.flat_parts import ALL, FlatPart
+from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.errors import DeliveryError
+from cadpanel.geometry.biarcs import arc_contour_area, off_arcs
+
+if TYPE_CHECKING:
+    from ezdxf.entities.dxfentity import DXFEntity
+
+SAME_PLACE = 1e-6
+"""Distance in mm of two points that are meant to be one."""
+_ENDING = ".dxf"
+_VERSION = b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n  9\r\n$ACADVER\r\n  1\r\nAC1015\r\n  0\r\nENDSEC\r\n  0\r\nSECTION\r\n"
+_ENTITIES = b"  2\r\nENTITIES\r\n"
+_END = b"  0\r\nENDSEC\r\n"
+_GUARD = b"  0\r\nPOINT\r\n  8\r\n0\r\n"
+# Places on each curve of the exact contour that are looked for in the drawing.
+_PLACES = 33
+
+
+def prove_drawings(folder: Path, contents: Contents) -> Proof:
+    """Read every drawing of a delivery back.
+
+    Raises:
+        DeliveryError: one of them is missing or cannot be read.
+    """
+    whole = folder / f"{ALL}{_ENDING}"
+    frame, errors, contours = _audited(whole, contents.shop)
+    failures = [f"'{whole.name}': ezdxf finds {error}." for error in errors]
+    if len(contours) != len(contents.parts):
+        failures.append(f"'{whole.name}' holds {len(contours)} contours, expected {len(contents.parts)}.")
+    off, area_off = 0.0, abs(sum(map(arc_contour_area, contours)) - sum(part.size.area for part in contents.parts))
+    allowed = sum(_area_allowed(part, contents.shop) for part in contents.parts)
+    if area_off > allowed:
+        failures.append(f"'{whole.name}': its contours enclose {area_off:.3g} mm2 too much or too little.")
+    for part in contents.parts:
+        path = folder / f"{part.blank.file}{_ENDING}"
+        own_frame, entities = _read(path)
+        if own_frame != frame:
+            failures.append(f"'{path.name}': what stands about its entities is not what '{whole.name}' has.")
+        found = list(_part_faults(part, _on_layers(entities), contents.shop))
+        failures += [f"'{path.name}': {fault}." for _, fault in found if fault]
+        off = max([off, *(measured for measured, _ in found)])
+    strange = sorted({path.name for path in folder.iterdir()} - {whole.name} - _files(contents.parts))
+    failures += [f"'{name}' stands among the drawings, and no panel of the report is drawn there." for name in strange]
+    return Proof(
+        numbers={"drawings": len(contents.parts) + 1, "audit_errors": len(errors), "contour_error": off},
+        failures=tuple(failures),
+    )
+
+
+def _files(parts: Sequence[FlatPart]) -> set[str]:
+    return {f"{part.blank.file}{_ENDING}" for part in parts}
+
+
+def _area_allowed(part: FlatPart, shop: ShopSettings) -> float:
+    bent = sum(length for length, curved in zip(part.size.pieces, part.pattern.curves.curved, strict=True) if curved)
+    return shop.chord * bent + SAME_PLACE * sum(part.size.pieces)
+
+
+def _part_faults(part: FlatPart, layers: dict[str, list[Any]], shop: ShopSettings) -> Iterator[tuple[float, str]]:
+    """Distances that were measured, each with what is wrong with it, or nothing."""
+    contours = _contours(layers.get(shop.layer("CUT"), []))
+    if len(contours) != 1:
+        yield 0.0, f"it holds {len(contours)} closed contours on the layer that is cut instead of one"
+        return
+    curves, vertices = part.pattern.curves, contours[0]
+    places = curves.points(np.broadcast_to(np.linspace(0.0, 1.0, _PLACES), (len(curves), _PLACES)))
+    off = float(off_arcs(vertices, places.reshape(-1, 2)).max())
+    yield off, f"its contour lies {off:.3g} mm off the exact one" if off > shop.chord + SAME_PLACE else ""
+    corners = float(np.linalg.norm(curves.start[:, None] - vertices[:, :2], axis=-1).min(axis=1).max())
+    yield 0.0, f"a corner of it is {corners:.3g} mm off" if corners > SAME_PLACE else ""
+    area_off = abs(arc_contour_area(vertices) - part.size.area)
+    yield 0.0, f"its area is off by {area_off:.3g} mm2" if area_off > _area_allowed(part, shop) else ""
+    wanted = {} if shop.dxf_contour_only else {"BEND": bend_lines(part), "ROLL": roll_lines(part, shop.roll_pitch)}
+    for role in {shop.layer(role): role for role in wanted}.values():
+        alike = [lines for other, lines in wanted.items() if shop.layer(other) == shop.layer(role)]
+        found = [entity for entity in layers.get(shop.layer(role), []) if entity.dxftype() == "LINE"]
+        drawn = np.array([[line.dxf.start.vec2, line.dxf.end.vec2] for line in found]).reshape(-1, 2, 2)
+        yield 0.0, "" if _same_lines(drawn, np.concatenate(alike)) else f"its lines on the layer {role} lie elsewhere"
+
+
+def _same_lines(drawn: Array, wanted: Array) -> bool:
+    """Whether every line that is wanted is drawn; marks may share its layer."""
+    if not len(wanted) or len(drawn) < len(wanted):
+        return not len(wanted)
+    apart = np.abs(drawn[:, None] - wanted).max(axis=(-1, -2)).min(axis=0)
+    return bool(apart.max() <= SAME_PLACE)
+
+
+def _audited(path: Path, shop: ShopSettings) -> tuple[bytes, list[str], list[Array]]:
+    """The frame of the drawing of all parts, what ezdxf's audit says of it, and its contours."""
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    frame, _ = _split(path)
+    try:
+        document = readfile(path)
+    except (OSError, DXFError, ValueError) as error:
+        raise DeliveryError(f"'{path}' cannot be read: {error}.") from error
+    audit = document.audit()
+    errors = [problem.message for problem in (*audit.errors, *audit.fixes)]
+    layers = _on_layers(list(document.modelspace()))
+    return frame, errors, _contours(layers.get(shop.layer("CUT"), []))
+
+
+def _split(path: Path) -> tuple[bytes, bytes]:
+    """What stands before and behind the entities of a drawing, and a file of these alone."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be read: {error.strerror}.") from error
+    head, mark, rest = data.partition(_ENTITIES)
+    entities, _, tail = rest.partition(_END)
+    if not (data.startswith(MARK) and mark and tail):
+        raise DeliveryError(f"'{path}' cannot be read: it is not a whole drawing of cadpanel.")
+    return head + tail, _VERSION + mark + entities + _END
+
+
+def _read(path: Path) -> tuple[bytes, list[DXFEntity]]:
+    from ezdxf.addons import iterdxf
+    from ezdxf.lldxf.const import DXFError
+
+    frame, data = _split(path)
+    # The last entity before the section's end would not be told of: that is one of our own.
+    stream = io.BytesIO(data.replace(_END, _GUARD + _END))
+    try:
+        return frame, [one for one in iterdxf.single_pass_modelspace(stream) if one.dxftype() != "POINT"]
+    except (DXFError, ValueError) as error:
+        raise DeliveryError(f"'{path}' cannot be read: {error}.") from error
+
+
+def _on_layers(entities: Sequence[Any]) -> dict[str, list[Any]]:
+    from ezdxf.lldxf.encoding import decode_dxf_unicode
+
+    found: dict[str, list[Any]] = {}
+    for entity in entities:
+        found.setdefault(decode_dxf_unicode(entity.dxf.layer), []).append(entity)
+    return found
+
+
+def _contours(entities: Sequence[Any]) -> list[Array]:
+    """Closed contours (v, 3): polylines, and lines and arcs each of which begins where the one before ends.
+
+    None if a line or an arc goes on from nowhere, or a contour does not close.
+    """
+    found = [
+        np.array(entity.get_points("xyb"))
+        for entity in entities
+        if entity.dxftype() == "LWPOLYLINE" and entity.closed and len(entity) > 1
+    ]
+    pieces = [_ways(entity) for entity in entities if entity.dxftype() in ("LINE", "ARC")]
+    chain: list[_Piece] = []
+    for place, ways in enumerate(pieces):
+        if chain:
+            fitting = [way for way in ways if _apart(chain[-1].stop, way.start) <= SAME_PLACE]
+        else:  # whichever way leads on to the next one
+            onwards = [way.start for way in pieces[(place + 1) % len(pieces)]]
+            fitting = [way for way in ways if min(_apart(way.stop, start) for start in onwards) <= SAME_PLACE]
+        if not fitting:
+            return []
+        chain.append(fitting[0])
+        if _apart(chain[0].start, chain[-1].stop) <= SAME_PLACE:
+            found.append(np.array([[*one.start, one.bulge] for one in chain]))
+            chain = []
+    return [] if chain else found
+
+
+def _apart(one: Array, other: Array) -> float:
+    return float(np.linalg.norm(one - other))
+
+
+class _Piece(NamedTuple):
+    start: Array
+    stop: Array
+    bulge: float
+
+
+def _ways(entity: Any) -> list[_Piece]:
+    """A line or an arc, followed one way and the other."""
+    bulge = 0.0
+    if entity.dxftype() == "LINE":
+        start, stop = entity.dxf.start, entity.dxf.end
+    else:
+        start, stop = entity.start_point, entity.end_point
+        bulge = float(np.tan(0.25 * np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)))
+    ends = np.array(start.vec2), np.array(stop.vec2)
+    return [_Piece(*ends, bulge), _Piece(*ends[::-1], -bulge)]

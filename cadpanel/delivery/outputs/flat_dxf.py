@@ -1,0 +1,54 @@
+"""The flat pattern of every panel as DXF, one drawing a panel, and one with all parts in rows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import MappingProxyType
+
+from cadpanel.delivery.contents import Contents, Proof
+from cadpanel.delivery.outputs.output import Delivery, Output
+from cadpanel.errors import DeliveryError
+
+FLAT = "flat"
+"""The folder of drawings."""
+ENDING = ".dxf"
+
+
+class FlatDxf(Output):
+    """Flat patterns."""
+
+    name = "flats"
+    files = ()
+    # As cadpanel.delivery.drawing.dxf begins them; that module loads NumPy, and a refusal asks for names only.
+    folders = MappingProxyType({FLAT: b"999\r\ncadpanel\r\n"})
+
+    def write(self, folder: Path, delivery: Delivery) -> None:
+        """See `Output.write`."""
+        from cadpanel.delivery.drawing.dxf import dxf_bytes, frame_of
+        from cadpanel.delivery.drawing.entities import moved
+        from cadpanel.delivery.drawing.layout import in_rows
+        from cadpanel.delivery.drawing.part import part_drawings
+        from cadpanel.delivery.records.flat_parts import ALL
+
+        shop, parts = delivery.shop, delivery.parts
+        frame = frame_of(shop)
+        drawings = part_drawings(parts, delivery.records, delivery.seams, delivery.sheet, shop)
+        together = [
+            entity
+            for drawing, shift in zip(drawings, in_rows(drawings), strict=True)
+            for entity in moved(drawing, shift)
+        ]
+        place = folder / FLAT
+        try:
+            place.mkdir()
+            for part, drawing in zip(parts, drawings, strict=True):
+                (place / f"{part.blank.file}{ENDING}").write_bytes(dxf_bytes(drawing, frame, shop.dxf_entities))
+            (place / f"{ALL}{ENDING}").write_bytes(dxf_bytes(together, frame, shop.dxf_entities))
+        except OSError as error:
+            raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error
+
+    def prove(self, folder: Path, contents: Contents) -> Proof:
+        """Every drawing is read back: contour, bends, and all of it by ezdxf's own audit."""
+        from cadpanel.delivery.drawing.proof import prove_drawings
+
+        return prove_drawings(folder / FLAT, contents)

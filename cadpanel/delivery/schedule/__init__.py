@@ -1,0 +1,1 @@
+"""The schedule of a delivery: its rows, how they are written."""

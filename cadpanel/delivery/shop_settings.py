@@ -1,0 +1,220 @@
+"""What the shop gets besides the solids, and what its machines and its store take: checked when it is made."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypedDict, get_args
+
+from cadpanel.errors import SettingsError
+from cadpanel.reference.texts import choices_of
+from cadpanel.setting import Option, Range, check_ranges, setting
+
+Origin = Literal["local", "keep"]
+DxfEntities = Literal["polyline", "lines"]
+LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
+"""What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
+_SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
+_NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
+_LONGEST_LAYER = 255
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShopSettings:
+    """What is delivered, of which panels, and how flat patterns and schedules are made.
+
+    Attributes:
+        outputs: names of outputs; None for all that are made unasked.
+        only: names of the panels to deliver, * for anything; all if empty.
+        origin: where STEP files lie of a model far away: near their own origin, or where the model lies.
+        k_factor: distance of the surface that keeps its lengths from a bend's inner face, a share of the thickness.
+        chord: how far arcs in a drawing may lie from the exact contour, mm.
+        roll_pitch: largest distance between two rulings of a bend, mm.
+        dxf_entities: "polyline": the contour is one polyline with bulges; "lines": lines and arcs.
+        dxf_layers: names for some of LAYERS, pairs of one of them and the name that it gets.
+        dxf_contour_only: draw what is cut, and nothing else.
+        dxf_name_length: longest name of a drawing's file, without its ending.
+        density: of the sheet's material, kg/m3.
+        stock: sheets that the store has, length and width, mm.
+        facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
+    """
+
+    outputs: str | Sequence[str] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: choices_of(text, "outputs"),
+            metavar="NAME,...",
+            help="What to write besides report.json: step, flats, schedule, setting-out, xlsx; all but the last if not "
+            "given.",
+        ),
+    )
+    only: str | Sequence[str] = setting(
+        (),
+        option=Option(
+            takes=str,
+            read=lambda _, text: choices_of(text, "panels"),
+            metavar="NAME,...",
+            help="Deliver only these panels, * for anything; all are fitted.",
+            told=False,
+        ),
+    )
+    origin: Origin = setting(
+        "local", option=Option(help="STEP files of a model on a map: near their own origin, or where the model lies?")
+    )
+    k_factor: float = setting(
+        0.5,
+        within=Range(what="K-factor", least=0.0, most=1.0),
+        option=Option(
+            metavar="SHARE", help="Where the sheet keeps its lengths: a share of it, from the bends' inner face."
+        ),
+    )
+    chord: float = setting(
+        0.01,
+        within=Range(what="chord tolerance", least=1e-3, most=10.0, unit=" mm"),
+        option=Option(metavar="MM", help="How far arcs in drawings may lie from the exact contour."),
+    )
+    roll_pitch: float = setting(
+        50.0,
+        within=Range(what="pitch of the rulings", least=1.0, unit=" mm"),
+        option=Option(metavar="MM", help="Largest distance between rulings drawn in a bend."),
+    )
+    dxf_entities: DxfEntities = setting(
+        "polyline", option=Option(help="Contours as one polyline with bulges, or as lines and arcs?")
+    )
+    dxf_layers: Sequence[tuple[str, str]] = setting(
+        (),
+        option=Option(
+            takes=str,
+            read=lambda _, text: layers_of(text),
+            metavar="CUT=NAME,...",
+            help=f"Other names for the layers {', '.join(LAYERS)}.",
+            told=False,
+        ),
+    )
+    dxf_contour_only: bool = setting(False, option=Option(help="Draw what is cut, and nothing else."))
+    dxf_name_length: int = setting(
+        80,
+        within=Range(what="longest name of a drawing", least=8, most=120, whole=True),
+        option=Option(metavar="N", help="Longest name of a drawing's file, without its ending."),
+    )
+    density: float = setting(
+        2700.0,
+        within=Range(what="density", least=1.0, most=30_000.0, unit=" kg/m3"),
+        option=Option(metavar="KG/M3", help="Of the sheet's material; aluminium if not given."),
+    )
+    stock: Sequence[tuple[float, float]] = setting(
+        (),
+        option=Option(
+            takes=str,
+            read=lambda _, text: stock_of(text),
+            metavar="AxB,...",
+            help="Sheets that the store has, in mm; panels that fit none are named.",
+            told=False,
+        ),
+    )
+    facet_height: float = setting(
+        0.5,
+        within=Range(what="facet height", least=1e-3, most=100.0, unit=" mm"),
+        option=Option(metavar="MM", help="How far a bend pressed in facets may lie from the round one."),
+    )
+
+    def __post_init__(self) -> None:
+        """Check every setting, and bring those of several parts into one form.
+
+        Raises:
+            SettingsError: a setting is out of range; the message says which and what it may be.
+        """
+        check_ranges(self)
+        if self.dxf_entities not in get_args(DxfEntities):
+            raise SettingsError(f"contours are drawn as polyline or lines, not as {self.dxf_entities!r}")
+        if self.origin not in get_args(Origin):
+            raise SettingsError(f"the origin is local or kept ('keep'), not {self.origin!r}")
+        if not isinstance(self.dxf_contour_only, bool):
+            raise SettingsError(f"'dxf_contour_only' is yes or no, True or False, not {self.dxf_contour_only!r}")
+        if self.outputs is not None:
+            object.__setattr__(self, "outputs", _names("outputs", self.outputs))
+        object.__setattr__(self, "only", _names("panels", self.only) if self.only else ())
+        object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
+        object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
+
+    def layer(self, role: str) -> str:
+        """The name of a layer."""
+        return dict(self.dxf_layers).get(role, role)
+
+
+def stock_of(text: str) -> tuple[tuple[float, float], ...]:
+    """Sheets from "1500x3000,2000x4000".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = [_SHEET.fullmatch(part) for part in text.split(",")]
+    if not all(found):
+        raise SettingsError(f"sheets of the stock are written like 1500x3000,2000x4000, not {text!r}")
+    return tuple((float(sheet[1]), float(sheet[2])) for sheet in found if sheet is not None)
+
+
+def layers_of(text: str) -> tuple[tuple[str, str], ...]:
+    """Names of layers from "CUT=0,BEND=V-groove".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    pairs = [part.partition("=") for part in text.split(",")]
+    if not all(equals for _, equals, _ in pairs):
+        raise SettingsError(f"names of layers are written like CUT=0,BEND=Folds, not {text!r}")
+    return tuple((role.strip(), name.strip()) for role, _, name in pairs)
+
+
+def _names(what: str, given: object) -> tuple[str, ...]:
+    words = choices_of(given, what) if isinstance(given, str) else given
+    found = tuple(str(word).strip() for word in words) if isinstance(words, Iterable) else ()
+    if not found or not all(found):
+        raise SettingsError(f"{what} are chosen by their names, not by {given!r}")
+    return found
+
+
+def _checked_layers(given: object) -> tuple[tuple[str, str], ...]:
+    pairs = tuple(map(tuple, given)) if isinstance(given, Iterable) and not isinstance(given, str) else ()
+    for role, name in pairs:
+        if role not in LAYERS:
+            raise SettingsError(f"there is no layer '{role}' to name; the layers are {', '.join(LAYERS)}")
+        if not isinstance(name, str) or not 0 < len(name) <= _LONGEST_LAYER or _NO_LAYER.search(name):
+            raise SettingsError(
+                f"'{name}' is no name for a layer: leave out signs like / \\ : ; < > ? * | = and quotes"
+            )
+    if len(dict(pairs)) != len(pairs):
+        raise SettingsError("a layer has one name: give it once")
+    cut, *others = (dict(pairs).get(role, role).casefold() for role in LAYERS)
+    if cut in others:
+        raise SettingsError(f"what is cut needs a layer of its own, and '{cut}' is that of something else, too")
+    return pairs
+
+
+def _checked_sheet(given: object) -> tuple[float, float]:
+    sides = tuple(given) if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    good = [isinstance(side, int | float) and 0.0 < side < math.inf for side in sides]
+    if len(sides) != 2 or not all(good):
+        raise SettingsError(f"a sheet of the stock has two sides in mm, like (1500, 3000), not {given!r}")
+    return float(sides[0]), float(sides[1])
+
+
+class ShopKeywords(TypedDict, total=False):
+    """The fields of `ShopSettings` as keywords, which type checkers want written out; a test holds the two alike."""
+
+    outputs: str | Sequence[str] | None
+    only: str | Sequence[str]
+    origin: Origin
+    k_factor: float
+    chord: float
+    roll_pitch: float
+    dxf_entities: DxfEntities
+    dxf_layers: Sequence[tuple[str, str]]
+    dxf_contour_only: bool
+    dxf_name_length: int
+    density: float
+    stock: Sequence[tuple[float, float]]
+    facet_height: float

@@ -1,0 +1,23 @@
+"""The date of written files: that of SOURCE_DATE_EPOCH, so that the same delivery gives the same bytes."""
+
+from __future__ import annotations
+
+import os
+from datetime import UTC, datetime
+
+from cadpanel.errors import SettingsError
+
+VARIABLE = "SOURCE_DATE_EPOCH"
+
+
+def source_date() -> datetime:
+    """The date that the environment asks for, in seconds since 1970; the beginning of 1970 where it asks for none.
+
+    Raises:
+        SettingsError: what it says is no number of seconds.
+    """
+    said = os.environ.get(VARIABLE, "0")
+    try:
+        return datetime.fromtimestamp(int(said), UTC)
+    except (ValueError, OverflowError, OSError) as error:
+        raise SettingsError(f"{VARIABLE} must be a number of seconds since 1970, not '{said}'") from error

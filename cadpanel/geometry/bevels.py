@@ -1,0 +1,66 @@
+"""How far the walls of a sheet stand off square: the bevel of its cut edges."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.geometry.cone_sections import axis_frame
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.shape import edge_corners
+from cadpanel.geometry.vectors import cross, unit
+
+
+def edge_bevels(shape: Panel, other: Panel) -> dict[str, tuple[float, float]]:
+    """Least and largest angle between wall and sheet normal along each edge, radians; one angle where it is straight.
+
+    Args:
+        shape: the sheet's skin, with the normals.
+        other: its other face.
+    """
+    ends = {f"end {end}": tuple(bevels) for end, bevels in enumerate(end_bevels(shape).tolist())}
+    straight = ["side 0", "side 1"] if shape.four_sided else [f"edge {i}" for i in range(shape.corners().shape[1])]
+    return {**ends, **{edge: 2 * (_straight_bevel(shape, other, edge),) for edge in straight}}
+
+
+def _straight_bevel(shape: Panel, other: Panel, edge: str) -> float:
+    """The bevel of the wall between an edge and the same one on the other face; signs as those of ends."""
+    own = shape.edge(edge)
+    away = edge_corners(other.corners(), edge)[0] - own.corners[0]
+    wall = unit(cross(own.corners[-1] - own.corners[0], away))
+    turned_away = math.copysign(1.0, float(wall @ own.outward)) * wall
+    assert own.normal is not None  # straight edges have one
+    return math.asin(float(np.clip(own.normal @ turned_away, -1.0, 1.0)))
+
+
+def end_bevels(shape: Panel) -> Array:
+    """(2, 2) least and largest angle between wall and sheet normal along end 0 and end 1, radians; (0, 2) of no ends.
+
+    It is measured square to the edge: the wall lies in the cut plane with unit normal m, turned away from the panel,
+    and the bevel is asin(n . m) with n the sheet's outward normal. Positive: the outer face is the shorter one.
+    """
+    _, normals = shape.cuts()
+    turned_away = [normal * way for normal, way in zip(normals, (-1.0, 1.0), strict=False)]
+    leans = [_leans(shape, normal) for normal in turned_away]
+    extremes = np.array([[min(lean), max(lean)] for lean in leans]).reshape(-1, 2)
+    return np.asarray(np.arcsin(np.clip(extremes, -1.0, 1.0)))
+
+
+def _leans(shape: Panel, cut_normal: Array) -> list[float]:
+    """N . m at the rulings, and inside of curved patches where it is greatest or least."""
+    points, directions, normals = shape.rulings()
+    found = (normals @ cut_normal).tolist()
+    for index, patch in enumerate(shape.patches):
+        if not isinstance(patch, ConePatch):
+            continue
+        frame = axis_frame(points[index], directions[index], normals[index], patch)
+        cosine, sine = math.cos(patch.half_angle), math.sin(patch.half_angle)
+        toward, aside = float(frame.radial @ cut_normal), float(frame.tangential @ cut_normal)
+        phase, first, last = math.atan2(aside, toward), *sorted((0.0, patch.sweep))
+        for half_turn in range(math.ceil((first - phase) / math.pi), math.floor((last - phase) / math.pi) + 1):
+            swing = math.hypot(toward, aside) * (-1.0) ** half_turn
+            found.append(cosine * swing - sine * float(frame.axis @ cut_normal))
+    return list(found)

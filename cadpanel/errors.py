@@ -55,6 +55,30 @@ class OutlineError(PanelError):
         return OutlineError(self.panel, self.source, self.fault, remedy)
 
 
+class OverlapError(PanelError):
+    """A part of one panel lies on another one.
+
+    Attributes:
+        fault: on which, and how far.
+    """
+
+    def __init__(self, panel: str, source: str, fault: str, remedy: str) -> None:
+        super().__init__(panel, f"in '{source}', {fault}: {remedy}.")
+        self.source = source
+        self.fault = fault
+        self.remedy = remedy
+
+    def __reduce__(self) -> tuple[type[OverlapError], tuple[str, ...]]:
+        return type(self), (self.panel, self.source, self.fault, self.remedy)
+
+    def of_a_cut(self) -> PanelError:
+        """The same of panels that were cut out of one skin here: there is none to delete."""
+        return PanelError(
+            self.panel,
+            f"in '{self.source}', {self.fault}; both were cut from its skin, which comes so close to itself there.",
+        )
+
+
 class SettingsError(CadpanelError, ValueError):
     """A setting is out of its range or contradicts another one."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 import zlib
 from base64 import b64decode, b64encode
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -91,8 +91,13 @@ class Tube:
         """The surface's parameters."""
         return (up, around) if self.round_v else (around, up)
 
-    def brep(self, reverse: bool = False) -> Any:
-        """The face as a polysurface of one face: its lower border waves, and its seam is one edge on both sides."""
+    def brep(self, reverse: bool = False, change: Callable[[bytes], bytes] = bytes) -> Any:
+        """The face as a polysurface of one face: its lower border waves, and its seam is one edge on both sides.
+
+        Args:
+            reverse: whether it lies against its surface.
+            change: what is done to the bytes of its trims.
+        """
         around = np.linspace(0.0, 1.0, EDGE_POINTS)
         wave = [*zip(around.tolist(), self.lower(around).tolist(), strict=True)]
         foot = wave[0][1]
@@ -111,7 +116,7 @@ class Tube:
             trims.append(([self.place(*point) for point in slipped], edge, against))
         if self.round_v:  # the other way round in the parameter plane
             trims = [(line[::-1], edge, 1 - against) for line, edge, against in trims[::-1]]
-        return _decoded(_written(surface, edges, trims, self, reverse))
+        return _decoded(_written(surface, edges, trims, self, reverse, change))
 
 
 def _curve(points: list[Any], dimension: int) -> Any:
@@ -127,7 +132,14 @@ def _curve(points: list[Any], dimension: int) -> Any:
     return curve
 
 
-def _written(surface: Any, edges: dict[int, list[Any]], trims: list[Any], tube: Tube, reverse: bool) -> bytes:
+def _written(
+    surface: Any,
+    edges: dict[int, list[Any]],
+    trims: list[Any],
+    tube: Tube,
+    reverse: bool,
+    change: Callable[[bytes], bytes],
+) -> bytes:
     """ON_Brep of one face, chunk version 3.0."""
     singular = {2} if tube.apex else set()
     kept = [edge for edge in sorted(edges) if edge not in singular]
@@ -165,7 +177,7 @@ def _written(surface: Any, edges: dict[int, list[Any]], trims: list[Any], tube: 
             for place, edge in enumerate(kept)
         ]
     )
-    body += _chunk(ANONYMOUS, b"\x10" + struct.pack("<i", len(trims)) + written_trims)
+    body += _chunk(ANONYMOUS, b"\x10" + struct.pack("<i", len(trims)) + change(written_trims))
     body += _array([struct.pack("<i", 0) + _ints(range(len(trims))) + struct.pack("<ii", 1, 0)])
     body += _array([struct.pack("<i", 0) + _ints([0]) + struct.pack("<iii", 0, int(reverse), 0)])
     reach = tube.radius

@@ -186,7 +186,6 @@ WITHOUT_LOGIC = {
     "cadpanel.cli.features": "prints the catalogue",
 }
 THROUGH_A_DOOR = {
-    "cadpanel.brep.skin.belt": "tests/brep/cutting/test_belts.py",
     "cadpanel.atomic.axis_starts": "tests/atomic/test_recovery.py",
     "cadpanel.atomic.clouds": "tests/atomic/test_laws.py",
     "cadpanel.atomic.deviations": "tests/atomic/test_laws.py",
@@ -196,7 +195,6 @@ THROUGH_A_DOOR = {
     "cadpanel.atomic.surface": "tests/atomic/test_recovery.py",
     "cadpanel.brep.building.chain_sheet": "tests/brep/building/test_sheet.py",
     "cadpanel.brep.building.chain_skin": "tests/brep/building/test_sheet.py",
-    "cadpanel.brep.cutting.by_length": "tests/brep/cutting/test_ways.py",
     "cadpanel.brep.cutting.by_stations": "tests/brep/cutting/test_ways.py",
     "cadpanel.brep.files.brep": "tests/brep/files/test_formats.py",
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",

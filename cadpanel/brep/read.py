@@ -13,7 +13,7 @@ from typing import cast
 from cadpanel.brep.cutting.raw_panels import RawReference
 from cadpanel.brep.cutting.ways import REMEDIES
 from cadpanel.brep.isolation.client import work_guarded
-from cadpanel.errors import OutlineError
+from cadpanel.errors import OutlineError, OverlapError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceSettings, file_named
@@ -39,6 +39,10 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
         if how.way not in REMEDIES:
             raise
         raise error.with_remedy(REMEDIES[how.way]) from error
+    except OverlapError as error:
+        if how.way is None:
+            raise
+        raise error.of_a_cut() from error
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how, origin=raw.origin)
 
 

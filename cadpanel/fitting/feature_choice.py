@@ -9,6 +9,7 @@ import numpy as np
 from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import PanelError
 from cadpanel.features.catalogue import POLYGON, for_corners
+from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.measures.fit import largest_deviations
 from cadpanel.fitting.methods.local import Local
@@ -46,6 +47,8 @@ class Choice:
         if settings.max_deviation is None:
             raise ValueError("without a largest deviation every feature would do")
         self._reference, self._settings, self._largest = reference, settings, settings.max_deviation
+        self._length = float(np.mean([panel.length for panel in reference.panels]))
+        self._alone: dict[tuple[int, int], Array] = {}
         panels = len(reference.panels)
         self.deviations = np.full((panels, len(CHEAPEST_FIRST)), np.inf)
         self._tried = np.zeros(self.deviations.shape, dtype=bool)
@@ -62,6 +65,21 @@ class Choice:
             self._feature(place, panel)
             for place, panel in zip(self.chosen.tolist(), self._reference.panels, strict=True)
         ]
+
+    def alone(self, layout: Layout) -> Array:
+        """(panels, size) the unknowns of the panels fitted alone with the features chosen, posed as they were tried.
+
+        Raises:
+            PanelError: no start was found for a panel with any feature.
+        """
+        unknowns = np.zeros((layout.panels, layout.size))
+        for panel, place in enumerate(self.chosen.tolist()):
+            own = self._alone.get((panel, place))
+            if own is None:
+                name = self._reference.panels[panel].name
+                raise PanelError(name, "no feature comes near it; check its faces, or take it out of the file")
+            unknowns[panel, : len(own)] = own
+        return unknowns
 
     def promote(self, panels: IntArray) -> bool:
         """Give panels that break a limit the next feature that suits them.
@@ -107,12 +125,15 @@ class Choice:
             return
         try:
             part = replace(self._reference, panels=tuple(self._reference.panels[i] for i in suited), seams=())
-            problem, starts = pose(part, [self._feature(place, panel) for panel in part.panels])
+            features = [self._feature(place, panel) for panel in part.panels]
+            problem, starts = pose(part, features, length=self._length)
         except PanelError as error:
             # No start was found for one of them, which the next feature may suit better.
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
         found = Local().fit(problem, starts, self._settings)
+        for i, row, feature in zip(suited, found.unknowns, problem.layout.feature_of, strict=True):
+            self._alone[i, place] = row[: len(feature.free)]
         self.deviations[suited, place] = largest_deviations(panel_shapes(problem, found.unknowns), part)
 
     def _suits(self, panel: PanelReference, place: int) -> bool:

@@ -179,7 +179,11 @@ class Problem:
 
 
 def pose(
-    reference: Reference, features: Sequence[PanelFeature], blends: Sequence[Blend] = ()
+    reference: Reference,
+    features: Sequence[PanelFeature],
+    blends: Sequence[Blend] = (),
+    *,
+    length: float | None = None,
 ) -> tuple[Problem, tuple[Array, ...]]:
     """The problem of a reference, one feature a panel, and first unknowns (panels, size), the likeliest first.
 
@@ -187,13 +191,14 @@ def pose(
         reference: what is to be approximated.
         features: one a panel.
         blends: which stretches are to become the curved patches, where the user says so.
+        length: mm, the solver's; the panels' mean length if not given.
 
     Raises:
         PanelError: a panel is not what its feature is made for.
         SettingsError: a blend does not suit a panel.
     """
     check_blends(reference, features, blends)
-    length = float(np.mean([panel.length for panel in reference.panels]))
+    length = float(np.mean([panel.length for panel in reference.panels])) if length is None else length
     layout = Layout.of(features, length)
     samples = SampleArrays.of(reference)
     begin = start(reference, layout, samples, length, stretches(reference.panels, blends))

@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
@@ -107,6 +108,12 @@ class FitResult:
         if self.tolerance_met:
             return None
         m = self.measures
+        oblique = np.flatnonzero(too_oblique(self.shapes))
+        if len(oblique):
+            return (
+                f"panel '{self.reference.panels[oblique[0]].name}' cannot be built: an end of it is cut too obliquely; "
+                "divide it further, or choose another feature"
+            )
         allowed = self.settings.max_deviation
         if allowed is not None and m.max_deviation.max() > allowed:
             far = int(m.max_deviation.argmax())

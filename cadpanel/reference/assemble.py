@@ -7,7 +7,7 @@ from numbers import Real
 
 import numpy as np
 
-from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.alignment import align, find_seams, orient
 from cadpanel.reference.ends_and_outside import first_ends, outer_faces
@@ -23,6 +23,8 @@ from cadpanel.reference.seam_finding import after_flipping, find_contacts, refus
 SEAM_TOLERANCE = 1.0
 # The largest tolerance, against the distance of any two neighbouring corners of a panel.
 LARGEST_TOLERANCE = 0.4
+# Corners as close as this are one, mm: no seam tolerance could be small enough to tell them apart.
+SAME_CORNER = 1e-3
 
 
 def assemble(
@@ -52,7 +54,7 @@ def assemble(
     if junctions:
         outlines = part_sides(outlines, seam_tolerance)
     sheets = [sheet(raw, outline) for raw, outline in zip(raw_panels, outlines, strict=True)]
-    _check_tolerance(sheets, seam_tolerance)
+    _check_tolerance(sheets, source, seam_tolerance)
     refuse_duplicates(sheets, source, seam_tolerance)
     contacts = find_contacts(sheets, source, seam_tolerance)
     refuse_overlaps(sheets, source, seam_tolerance)
@@ -70,10 +72,16 @@ def _is_length(value: object) -> bool:
     return isinstance(value, Real) and 0.0 < float(value) < np.inf
 
 
-def _check_tolerance(sheets: Sequence[Sheet], seam_tolerance: float) -> None:
+def _check_tolerance(sheets: Sequence[Sheet], source: str, seam_tolerance: float) -> None:
     """Refuse a tolerance within which two corners of a panel could be taken for each other."""
     shortest = [min(float(norm(side.points[-1] - side.points[0])) for side in one.sides) for one in sheets]
     panel = int(np.argmin(shortest))
+    if shortest[panel] < SAME_CORNER:
+        raise PanelError(
+            sheets[panel].name,
+            f"in '{source}', two of its corners lie on each other: its sides meet in a knife edge there, and no panel "
+            "reaches round one.",
+        )
     if seam_tolerance > LARGEST_TOLERANCE * shortest[panel]:
         raise SettingsError(
             f"The seam tolerance of {seam_tolerance:g} mm is too large for panel '{sheets[panel].name}', two corners "

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array, BoolArray, IntArray
-from cadpanel.errors import PanelError
+from cadpanel.errors import OverlapError
 from cadpanel.geometry.polyline import distances_to_curves
 from cadpanel.geometry.vectors import cross, norm, unit
 from cadpanel.reference.oriented_panel import Sheet
@@ -78,7 +78,7 @@ def refuse_overlaps(sheets: Sequence[Sheet], source: str, tolerance: float) -> N
         tolerance: how closely they lie on each other, and how far inside the outline of the other, mm.
 
     Raises:
-        PanelError: naming both.
+        OverlapError: naming both.
     """
     if len(sheets) < 2:
         return
@@ -95,15 +95,13 @@ def refuse_overlaps(sheets: Sequence[Sheet], source: str, tolerance: float) -> N
         for other in np.unique(owner[near]).tolist():
             own = depths[owner[near] == other]
             if np.count_nonzero(own > tolerance) >= COVERING or own.max() > DEEP * tolerance:
-                raise PanelError(sheets[other].name, _said(one.name, source, float(own.max()), tolerance))
+                raise _said(sheets[other].name, one.name, source, float(own.max()), tolerance)
 
 
-def _said(name: str, source: str, depth: float, tolerance: float) -> str:
+def _said(name: str, covered: str, source: str, depth: float, tolerance: float) -> OverlapError:
     wider = f", or give a seam tolerance of more than {depth:.3g} mm" if depth <= NARROW * tolerance else ""
-    return (
-        f"in '{source}', a part of it covers panel '{name}' to within {tolerance:g} mm, up to {depth:.4g} mm inside "
-        f"its outline: trim or delete one of the two{wider}."
-    )
+    fault = f"a part of it covers panel '{covered}' to within {tolerance:g} mm, up to {depth:.4g} mm inside its outline"
+    return OverlapError(name, source, fault, f"trim or delete one of the two{wider}")
 
 
 def _loop(sheet: Sheet) -> _Loop:

@@ -82,5 +82,6 @@ def check_fold(panel: PanelReference, source: str, *, flanged: bool, folds: int)
         raise PanelError(
             panel.name,
             f"in '{source}', it curves both ways like a sphere or a saddle (its normals turn by {across:.0f} degrees "
-            f"across the fold and by {along:.0f} along it), which flat sheet cannot follow: divide it further.",
+            f"across the fold and by {along:.0f} along it), which flat sheet cannot follow: make it shorter along the "
+            "fold, by a cut the other way where dividing it leaves these angles as they are.",
         )

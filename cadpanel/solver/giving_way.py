@@ -20,6 +20,8 @@ from cadpanel.solver.stop import Stop
 _CLOSE, _TRIES = 1.1, 16
 # Steps at most for one factor, from the last one that held; no more than this is gained by a single one.
 _STEPS, _MOST_NARROWED = 80, 1.7
+# Steps at most where it goes on from an end: a dozen do, or none will, and it has to begin anew.
+_RESUMED = 30
 # Steps after it was told to end.
 _LAST_STEPS = 12
 # So wide that nothing which may give way is held at all.
@@ -66,7 +68,8 @@ def hold_or_give_way(
         after: an end of the same model with slightly other distances, to go on from.
         tell: told of every step.
     """
-    first = interior_point(model, start, limits, after=after, tell=tell)
+    ready = limits if after is None else replace(limits, steps=min(limits.steps, _RESUMED))
+    first = interior_point(model, start, ready, after=after, tell=tell)
     best, cheap = first.best, first.best.cost <= most_cost
     holds, firm = max(best.firm, best.excess) <= _HOLDS, best.firm <= _HOLDS
     if holds and cheap:

@@ -38,6 +38,12 @@ _ELASTIC, _ELASTIC_RISE = 100.0, 3.0
 _LAG, _LEAST_LAG, _MOST_LAG, _STEP, _LAG_POWER = 0.8, 0.6, 0.95, 0.1, 0.3
 # Steps have settled where they gain at least this share of what they promise, and promise no more than these shares.
 _GAIN, _HARMFUL, _READY, _SHARE_LEFT = 0.25, 1e-3, 0.1, 3e-4
+# Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
+# along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
+_WEDGED, _ANEW = 1e5, 3
+# Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless
+# it is this many times too long.
+_FIRMLY, _FIRM_YET = 1e-3, 1.5
 # A correction longer than this share of the step is none.
 _BENT = 0.5
 # Promises below this share of the cost are rounding; a cost of this size is none.
@@ -57,11 +63,14 @@ class Limits:
         steps: at most.
         feasibility: by which share a vector may be too long.
         least_cost: below which nothing is left to gain.
+        patience: for so many steps what may give way waits for what must hold; of thousands of panels one is always
+            over, and waiting for it takes longer than it saves.
     """
 
     steps: int = 100
     feasibility: float = 1e-9
     least_cost: float = 0.0
+    patience: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +154,7 @@ class _Run:
         self.point = model.at(self.bounds.clip(start))
         self.vectors_held = sum(one.hold.radius.size for one in model.held)
         self.growth = np.full(self.pattern.components, 2.0)
-        self.lag = _LAG
+        self.lag, self.anew, self.waited = _LAG, 0, 0
         if after is None:
             self._begin()
         else:
@@ -168,6 +177,12 @@ class _Run:
             barrier.open(vectors, self.widest, self.lag, self.mu)
         self.damping = np.full(self.pattern.components, _LEAST_DAMPING)
 
+    def _begin_anew(self) -> None:
+        self.anew += 1
+        self.point = self.model.at(self.best.unknowns)
+        self.growth[:], self.lag = 2.0, _LAG
+        self._begin()
+
     def _resume(self, after: Ended) -> None:
         self.mu, self.widest = 4.0 * after.mu, 0.0
         self.damping = np.minimum(after.damping, 1.0)
@@ -180,6 +195,8 @@ class _Run:
         while steps < self.limits.steps and not settled and not stopped:
             steps += 1
             settled = self._step()
+            if not settled and self.anew < _ANEW and (self.damping >= _WEDGED).all():
+                self._begin_anew()
             if self.tell is not None:
                 stopped = not self.tell(steps, max(self.now.firm, self.now.excess * self.ease), self.now.cost)
         return Ended(
@@ -258,7 +275,10 @@ class _Run:
             if self.mu <= end and excess <= 1.0 + self.limits.feasibility and promised <= rest:
                 return True
             self.mu = max(self.mu * _BARRIER_DROP, 0.5 * end)
-        if settled or not failed.any():
+        # What must hold comes first: narrowed while it does not, the others would drive it further off. It may never.
+        waits = not settled and 1.0 + _FIRMLY < self.now.firm < _FIRM_YET and self.waited < self.limits.patience
+        self.waited += waits and not failed.any()
+        if settled or not (failed.any() or waits):
             self.widest = max(self.widest * self.lag, target)
             for barrier, vectors in zip(self.barriers, self.point.vectors, strict=True):
                 barrier.follow(vectors, self.widest, self.lag)

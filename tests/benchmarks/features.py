@@ -3,6 +3,7 @@
 python -m tests.benchmarks.features recovery
 python -m tests.benchmarks.features strips
 python -m tests.benchmarks.features grids
+python -m tests.benchmarks.features speed
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Unpack
 
 import numpy as np
 import typer
@@ -19,6 +20,7 @@ import cadpanel as cp
 from cadpanel.features.catalogue import CATALOGUE, feature
 from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.problem import pose
+from cadpanel.fitting.settings import FitKeywords
 from cadpanel.fitting.shapes import panel_shapes
 from fixtures.grids import dome, grid, honeycomb, vault
 from tests.instances import random_shapes
@@ -72,6 +74,37 @@ def strips() -> None:
         _row(name, cp.fit(reference, feature=name))
     for largest in (40.0, 25.0):
         _row(f"auto, {largest:g} mm", cp.fit(reference, feature="auto", max_deviation=largest))
+
+
+@app.command()
+def speed(
+    times: Annotated[int, typer.Option(help="Runs of each, of which the quickest counts.")] = 3,
+) -> None:
+    """Processor time of fits as multiples of plane-cone-plane's on the same panels; one processor is best for it."""
+    names = ("tri-cone", "plane-cone-cone-plane", "plane-cone-plane-cone-plane", "cone-spline-5")
+    choices = (40.0, 30.0, 25.0)
+    print(f"{'strip':<20} {'plane-cone-plane, s':>20}" + "".join(f" {name:>28}" for name in names), end="")
+    print("".join(f" {f'auto, {largest:g} mm':>14}" for largest in choices))
+    for strip in ("kai_tak_nw", "kai_tak_se_south", "kai_tak_se_east"):
+        reference = cp.read(FIXTURES / f"{strip}.step")
+        unit = _quickest(times, reference, feature="plane-cone-plane")
+        print(f"{strip:<20} {unit:20.2f}", end="", flush=True)
+        for name in names:
+            print(f" {_quickest(times, reference, feature=name) / unit:28.1f}", end="", flush=True)
+        for largest in choices:
+            share = _quickest(1, reference, feature="auto", max_deviation=largest) / unit
+            print(f" {share:14.1f}", end="", flush=True)
+        print()
+
+
+def _quickest(times: int, reference: cp.Reference, **settings: Unpack[FitKeywords]) -> float:
+    """Seconds of the processor."""
+    taken = []
+    for _ in range(times):
+        began = time.process_time()
+        cp.fit(reference, **settings)
+        taken.append(time.process_time() - began)
+    return min(taken)
 
 
 @app.command()

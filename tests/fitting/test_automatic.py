@@ -1,17 +1,21 @@
 """`auto`: each panel gets the cheapest feature that will do, and another one where it will not."""
 
+from collections import Counter
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from cadpanel.brep.read import read_reference
 from cadpanel.features.catalogue import feature
 from cadpanel.fitting import feature_choice
 from cadpanel.fitting.feature_choice import CHEAPEST_FIRST, Choice
+from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.run import fit
-from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.settings import LIKE_THE_PAPER, FitSettings
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone
 
@@ -83,7 +87,7 @@ def test_panels_that_cannot_be_built_among_their_neighbours_get_another_feature(
     """What cannot be built is told by the builder; here it refuses every cylinder."""
     built = feature_choice.can_be_built
     refused = lambda shape: shape.feature != "cylinder" and built(shape)  # noqa: E731
-    monkeypatch.setattr("cadpanel.fitting.run.can_be_built", refused)
+    monkeypatch.setattr("cadpanel.fitting.automatic.can_be_built", refused)
     result = fit(alone(random_shapes(feature("cylinder"), 2, 1)[0]), CLOSE)
     assert result.shapes[0].feature != "cylinder"
     assert result.measures.max_deviation.max() <= 0.01
@@ -97,3 +101,33 @@ def test_promoting_gives_the_next_closer_feature(most):
     rows = np.arange(len(before))
     assert np.all(choice.chosen >= before)
     assert np.all(choice.deviations[rows, choice.chosen] <= choice.deviations[rows, before])
+
+
+@cache
+def strip(name):
+    return read_reference(Path(__file__).parents[2] / "fixtures" / f"{name}.step")
+
+
+def test_panels_that_closing_takes_too_far_get_a_closer_feature_and_no_others():
+    result = fit(strip("kai_tak_se_east"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=40.0))
+    assert result.tolerance_met
+    found = Counter(shape.feature for shape in result.shapes)
+    assert found["plane-cylinder-plane"] >= 7
+    # With a wider limit nobody is taken too far, and all keep what they have alone.
+    wide = fit(strip("kai_tak_se_east"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=60.0))
+    assert {shape.feature for shape in wide.shapes} == {"plane-cylinder-plane"}
+
+
+def test_where_no_feature_follows_closely_enough_everything_else_holds():
+    result = fit(strip("kai_tak_nw"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=10.0))
+    assert not result.tolerance_met
+    assert result.measures.max_deviation.max() > 10.0
+    assert result.measures.max_seam_gap <= 1.0
+    assert all(limit.kept(result.measures, allowed).all() for limit, allowed in limits_of(result.settings))
+
+
+@pytest.mark.parametrize("name", ["plane-cone-cone-plane", "plane-cone-plane-cone-plane", "tri-cone", "cone-spline-5"])
+def test_chains_of_several_curved_patches_hold_a_strip_that_one_would_do_for(name):
+    result = fit(strip("kai_tak_nw"), FitSettings(feature=name))
+    assert result.tolerance_met
+    assert result.measures.overall_rms < 7.0

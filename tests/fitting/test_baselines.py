@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.fitting import baselines, run
+from cadpanel.fitting import attempt, baselines
 from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.methods.catalogue import TWO_STAGE
 from cadpanel.fitting.methods.two_stage import TwoStage
@@ -32,7 +32,7 @@ def counted(monkeypatch):
 
         return call
 
-    monkeypatch.setattr(run, "measure", counting("results", measure))
+    monkeypatch.setattr(attempt, "measure", counting("results", measure))
     monkeypatch.setattr(baselines, "measure", counting("baselines", measure))
     monkeypatch.setattr(TwoStage, "fit", counting("two_stage", TwoStage.fit))
     return counts

@@ -41,9 +41,8 @@ class MadeUp:
         tell("concurrent", 1, 1.0, 1.0)
         far, gap = self.together(count), self.gap(count)
         base = fitted()
-        measures = replace(
-            base.measures, max_deviation=np.full(3, far), seam_gap=np.full(2, gap), seam_step=np.full(2, gap)
-        )
+        corners = (np.full(4, gap),) * 2
+        measures = replace(base.measures, max_deviation=np.full(3, far), corner_gaps=corners, seam_gap=np.full(2, gap))
         shapes = (base.shapes[0],) * count
         held = far <= ALLOWED and gap <= how.widest_gap
         return replace(base, reference=reference, settings=how, measures=measures, shapes=shapes, tolerance_met=held)

@@ -11,11 +11,11 @@ import pytest
 
 from cadpanel.arrays import Array
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.automatic import offenders
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.verdict import keeps_limits
 from cadpanel.fitting.methods.weighted import weighted_objective
 from cadpanel.fitting.result import FitResult
-from cadpanel.fitting.run import _offenders
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.terms.limits.catalogue import LIMITS
@@ -123,7 +123,7 @@ def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(l
         assert bool(limit.excess(result.measures, allowed[limit.name]).max() <= 1.0) is kept
         again = replace(result, settings=how, tolerance_met=kept)
         # What a seam does counts for both of its panels.
-        assert len(_offenders(again)) == (0 if kept else 2 if limit.name in ("evenness", "max_kink") else 1)
+        assert len(offenders(again)) == (0 if kept else 2 if limit.name in ("evenness", "max_kink") else 1)
         said = again.shortfall()
         if kept:
             assert said is None

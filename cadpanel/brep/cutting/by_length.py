@@ -19,7 +19,8 @@ from cadpanel.brep.skin.belt import find_belt
 from cadpanel.brep.skin.face_cleanup import SkinFace, measure
 from cadpanel.brep.skin.iso_strip import find_lanes
 from cadpanel.brep.skin.ring import find_ring
-from cadpanel.errors import ReferenceFileError
+from cadpanel.brep.skin.strip import NoStripError
+from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import Seams
 
 
@@ -53,7 +54,15 @@ def cut_lip(
     """
     halves = _halves(surface, source, tolerance)
     if halves is None:
-        band, notes = lip_band(surface, width, source, tolerance)
+        try:
+            band, notes = lip_band(surface, width, source, tolerance)
+        except NoStripError as error:
+            if not _divides(surface, how, source, tolerance):
+                raise
+            raise ReferenceFileError(
+                f"The surface of {surface.numbers} of '{source}' has no two long edges between which a lip could be "
+                "told, but all of it can be divided: leave the band out."
+            ) from error
         return cut_lengths(band, how, source, tolerance), notes
     bands = [lip_band(half, width, source, tolerance) for half in halves]
     faces = [face for band, _ in bands for face in band.faces]
@@ -65,6 +74,14 @@ def cut_lip(
         )
     panels = cut_lengths(replace(found[0], name=surface.name), how, source, tolerance)
     return panels, tuple(note for _, notes in bands for note in notes)
+
+
+def _divides(surface: Surface, how: Lengths, source: str, tolerance: float) -> bool:
+    """Whether all of a surface can be divided so."""
+    try:
+        return bool(cut_lengths(surface, how, source, tolerance))
+    except CadpanelError:
+        return False
 
 
 def _halves(surface: Surface, source: str, tolerance: float) -> tuple[Surface, ...] | None:

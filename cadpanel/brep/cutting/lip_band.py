@@ -41,6 +41,8 @@ NEAR = 1.0
 MOST = 0.9
 CLOUD_ACROSS, CLOUD_ALONG = 401, 201
 CLOUD_REACH = 3.0
+# Bands of these parts of the width are tried where one cannot be cut out.
+OTHER_WIDTHS = (0.9, 1.1, 0.75, 1.35)
 # What a border of the band leaves of a face is no panel's part where it is narrower than this many tolerances, or mm
 # where that is more; but no wider than this part of the band.
 SLIVER = 1.5
@@ -63,8 +65,26 @@ def lip_band(surface: Surface, width: float, source: str, tolerance: float) -> t
 
     Raises:
         ReferenceFileError: the surface is no strip, has no lip or two that turn alike, the band reaches beyond the
-            surface, or the kernel cannot cut it out.
+            surface, or the kernel cannot cut it out; then it is told whether a band of nearly that width can be.
     """
+    try:
+        return _band(surface, width, source, tolerance)
+    except _UncutError as error:
+        for part in OTHER_WIDTHS:
+            other = float(f"{part * width:.2g}")
+            try:
+                _band(surface, other, source, tolerance)
+            except (_UncutError, ReferenceFileError):
+                continue
+            raise ReferenceFileError(f"{error}; a band of {other:g} mm can be cut.") from error
+        raise ReferenceFileError(f"{error}, nor are bands of nearly that width.") from error
+
+
+class _UncutError(Exception):
+    """What the kernel makes of a band that it cannot cut out, without an end."""
+
+
+def _band(surface: Surface, width: float, source: str, tolerance: float) -> tuple[Surface, tuple[str, ...]]:
     sections = sections_of(surface, PLACES, source, tolerance)
     lips = sorted(lips_midway(sections), key=lambda lip: -lip.turn)
     if not lips:
@@ -250,9 +270,8 @@ def _within(pieces: Pieces, surface: Surface, cloud: tuple[Array, Array], half: 
             near = np.abs(cloud[1][tree.query(piece.samples.points)[1]]) <= half
             share = float(piece.samples.weights @ near) / piece.area
             if 1.0 - MOST < share < MOST:
-                raise ReferenceFileError(
-                    f"The CAD kernel does not cut face {face.number} of '{source}' along its lip: ask for another "
-                    "width, or trim the face where it was modelled."
+                raise _UncutError(
+                    f"The band about the lip of face {face.number} of '{source}' is not cut by the CAD kernel"
                 )
             if share >= MOST:
                 kept.append(piece)
@@ -288,8 +307,7 @@ def _joined(faces: Sequence[SkinFace], surface: Surface, source: str, tolerance:
     """The pieces as a surface under the old name."""
     found, _ = surfaces_of(faces, source, tolerance)
     if len(found) != 1:
-        raise ReferenceFileError(
-            f"The band about the lip of the surface of {surface.numbers} of '{source}' falls into {len(found)} parts: "
-            "ask for another width, or trim it where it was modelled."
+        raise _UncutError(
+            f"The band about the lip of the surface of {surface.numbers} of '{source}' falls into {len(found)} parts"
         )
     return replace(found[0], name=surface.name)

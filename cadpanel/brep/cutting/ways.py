@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,8 @@ from cadpanel.brep.cutting.open_closed_faces import opened
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.strip import CUT_OTHERWISE
-from cadpanel.errors import ReferenceFileError, SettingsError
+from cadpanel.brep.splitting.splitter import UncutError
+from cadpanel.errors import CadpanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
 from cadpanel.reference.texts import AUTO
 
@@ -119,13 +121,37 @@ def _lengths(skin: _Skin) -> Cut:
     panels: list[CutPanel] = []
     notes: list[str] = []
     for surface in skin.surfaces:
-        if how.lip is None:
-            panels += cut_lengths(surface, wanted, source, how.seam_tolerance)
-        else:
-            of_band, found = cut_lip(surface, wanted, how.lip, source, how.seam_tolerance)
-            panels += of_band
-            notes += found
+        cut = partial(_cut_strip, surface, lip=how.lip, source=source, tolerance=how.seam_tolerance)
+        try:
+            of_strip, found = cut(wanted)
+        except UncutError as error:
+            # Of panels whose length is asked for nobody wants another number.
+            others = () if wanted.count is None else (wanted.count + 1, wanted.count - 1, wanted.count + 2)
+            asked = (replace(wanted, count=number) for number in others if number > 0)
+            other = next((one.count for one in asked if _works(cut, one)), None)
+            if other is None:
+                raise
+            raise ReferenceFileError(f"{str(error).rstrip('.')}; into {other} panels it can be cut.") from error
+        panels += of_strip
+        notes += found
     return Cut(panels=tuple(panels), notes=tuple(notes))
+
+
+def _cut_strip(
+    surface: Surface, wanted: Lengths, *, lip: float | None, source: str, tolerance: float
+) -> tuple[tuple[CutPanel, ...], tuple[str, ...]]:
+    if lip is None:
+        return cut_lengths(surface, wanted, source, tolerance), ()
+    return cut_lip(surface, wanted, lip, source, tolerance)
+
+
+def _works(cut: Callable[[Lengths], object], wanted: Lengths) -> bool:
+    """Whether such panels can be cut."""
+    try:
+        cut(wanted)
+    except CadpanelError:
+        return False
+    return True
 
 
 def _grid(skin: _Skin) -> Cut:

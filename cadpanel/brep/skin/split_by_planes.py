@@ -25,7 +25,7 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.splitting.split_along_edges import split_along
 from cadpanel.brep.splitting.split_by_pcurves import edge_across, slice_patch
-from cadpanel.brep.splitting.splitter import split_faces
+from cadpanel.brep.splitting.splitter import UncutError, split_faces
 from cadpanel.errors import ReferenceFileError
 from cadpanel.geometry.vectors import unit
 
@@ -296,10 +296,7 @@ def _place_of_piece(piece: TopoDS_Face, cuts: Cuts, what: str) -> int:
     pierced = _pierced(points, place, cuts)
     if pierced is not None:
         x, y, z = cuts.origins[pierced]
-        raise ReferenceFileError(
-            f"The CAD kernel leaves {what} uncut at ({x:.1f}, {y:.1f}, {z:.1f}): move the cuts a little, cut with a "
-            "network of curves, or split the surface where it was modelled."
-        )
+        raise UncutError(f"The CAD kernel leaves {what} uncut at ({x:.1f}, {y:.1f}, {z:.1f}).")
     return place
 
 

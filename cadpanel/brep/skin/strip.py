@@ -21,6 +21,11 @@ from cadpanel.reference.outline import Side, find_outline
 CUT_OTHERWISE = "cut it with a grid, a network of curves or a mesh"
 """What to do about a surface that is no strip."""
 
+
+class NoStripError(ReferenceFileError):
+    """A surface without two long edges."""
+
+
 SIDES = 4
 # A chord between the long edges shorter than this part of the strip's girth gives a plane no direction.
 NO_CHORD = 0.02
@@ -121,19 +126,19 @@ def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
         tolerance: how far faces that meet may lie apart, mm.
 
     Raises:
-        ReferenceFileError: the surface is no strip.
+        NoStripError: the surface is none.
     """
     raw = RawPanel(name=surface.name, faces=tuple(face.samples for face in surface.faces))
     try:
         sides = find_outline(raw, source, tolerance).sides
     except OutlineError as error:
         fewer = "choose fewer faces, or " if len(surface.faces) > 1 else ""
-        raise ReferenceFileError(
+        raise NoStripError(
             f"The surface of {surface.numbers} of '{source}' is no strip that could be divided along its length "
             f"({error.fault}): {fewer}{CUT_OTHERWISE}."
         ) from error
     if len(sides) != SIDES:
-        raise ReferenceFileError(
+        raise NoStripError(
             f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}: "
             f"{CUT_OTHERWISE}."
         )

@@ -31,6 +31,10 @@ INTEGRATED = 1e-8
 """Relative error to which areas are integrated."""
 
 
+class UncutError(ReferenceFileError):
+    """The kernel leaves a face uncut, or loses a part of it; what would help nobody knows before it is tried."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pieces:
     """What faces were split into.
@@ -141,9 +145,6 @@ def listed(shapes: Sequence[TopoDS_Shape]) -> TopTools_ListOfShape:
     return listed
 
 
-def unsplit(what: str, why: str) -> ReferenceFileError:
-    """The error that says what the kernel cannot split, why, and what to do about it."""
-    return ReferenceFileError(
-        f"The CAD kernel cannot split {what} ({why}): move the cuts a little, cut with a network of curves, "
-        "or split the surface where it was modelled."
-    )
+def unsplit(what: str, why: str) -> UncutError:
+    """The error that says what the kernel cannot split, and why."""
+    return UncutError(f"The CAD kernel cannot split {what} ({why}).")

@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.limit import Limit
 
 
 def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
-    """Whether every gap, deviation and limit is kept; with weights only a deviation has one to miss."""
+    """Whether every gap, deviation and limit is kept; with weights only a deviation has one to miss.
+
+    What cannot be built keeps nothing.
+    """
+    if too_oblique(measures.shapes).any():
+        return False
     if settings.max_deviation is not None and measures.max_deviation.max() > settings.max_deviation:
         return False
     if settings.weights is not None:

@@ -10,7 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.holding import MARGIN, gap_terms, held_within, prices, seam_terms, tighten
+from cadpanel.fitting.methods.holding import MARGIN, GapTerm, gap_terms, held_within, prices, seam_terms, tighten
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
@@ -54,7 +54,7 @@ class Concurrent(Method):
         return best_of_starts(
             lambda start: _hold_seams(problem, start, local, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
-            local,
+            starts[-1],
             settings,
         )
 
@@ -74,10 +74,8 @@ def _hold_seams(
 ) -> Fitted:
     """Hold every seam from a start, whose corners lie together already or are gathered first."""
     limits = problem.named_limits(settings, MARGIN)
-    begin, iterations = (start, 0) if gathered else _gather(problem, settings, [term for _, term in limits], start)
-    allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
-    gaps = gap_terms(problem, allowed, problem.state(begin))
-    named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in gaps), *limits]
+    begin, iterations = (start, 0) if gathered else gather(problem, settings, [term for _, term in limits], start)
+    named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in seams_held(problem, settings, begin)), *limits]
     model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
     found = held_within(problem, model, begin, local=local, tell=progress)
     iterations += found.iterations
@@ -95,7 +93,7 @@ def _hold_seams(
     for tightening in range(_TIGHTENINGS + 1):
         if stopped not in (Stop.HELD, Stop.STEP_LIMIT):
             break
-        excess = _excess(problem, found.unknowns, settings)
+        excess = seam_excess(problem, found.unknowns, settings)
         largest = max((float(over.max(initial=0.0)) for over in excess.values()), default=0.0)
         if largest <= 1.0:
             break
@@ -111,7 +109,13 @@ def _hold_seams(
     return Fitted(found.unknowns, iterations, stopped, prices=costs)
 
 
-def _excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
+def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list[GapTerm]:
+    """What holds gaps, a little inside what is allowed, as seams run at unknowns (panels, size)."""
+    allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
+    return gap_terms(problem, allowed, problem.state(unknowns))
+
+
+def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
     """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
     met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
     measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
@@ -119,7 +123,7 @@ def _excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[st
     return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
 
 
-def _gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
+def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
     """A few steps towards closed seams, and how many."""
     gaps = seam_terms(problem, settings.widest_gap)
     for gap in gaps:

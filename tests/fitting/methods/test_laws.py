@@ -214,11 +214,21 @@ def test_a_gap_that_is_weighed_and_not_held_is_no_tolerance_held():
 
 
 def test_a_local_fit_that_runs_out_of_steps_says_so(monkeypatch):
-    monkeypatch.setattr(local, "_MOST_SETTLE_BY", 2)
+    monkeypatch.setattr(local, "_RACE", ((2, 1.0), (400, 1.0)))
     problem, starts = posed(lip(2), FitSettings())
     assert Local().fit(problem, starts, FitSettings()).stopped is Stop.AT_REST
-    monkeypatch.setattr(local, "_LOCAL_ITERATIONS", 1)
+    monkeypatch.setattr(local, "_RACE", ((2, 1.0), (1, 1.0)))
     assert Local().fit(problem, starts, FitSettings()).stopped is Stop.STEP_LIMIT
+
+
+def test_of_several_starts_of_a_panel_the_best_end_counts():
+    """However far behind a start is, it does no harm, and a panel that begins there alone ends where the race does."""
+    problem, (start,) = posed(lip(2), FitSettings())
+    behind = start.copy()
+    behind[:, 1] += 0.05
+    alone = Local().fit(problem, [start], FitSettings()).unknowns
+    for starts in ([start, behind], [behind, start], [start, start]):
+        assert Local().fit(problem, starts, FitSettings()).unknowns == pytest.approx(alone, abs=1e-5)
 
 
 @pytest.mark.parametrize("what", ["gap", "width", "step", "shift"])

@@ -1,0 +1,120 @@
+"""Fits of one reference under one set of settings, with these features or with those."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from cadpanel.arrays import Array
+from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.baselines import Baselines
+from cadpanel.fitting.measures.fit import largest_deviations, measure
+from cadpanel.fitting.measures.verdict import keeps_limits
+from cadpanel.fitting.methods.catalogue import LOCAL, method_for
+from cadpanel.fitting.methods.concurrent import Concurrent
+from cadpanel.fitting.methods.local import fit_local, refuse_hopeless
+from cadpanel.fitting.methods.method import Fitted, Method
+from cadpanel.fitting.methods.trial import Trial
+from cadpanel.fitting.problem import Problem, pose
+from cadpanel.fitting.result import FitResult, Progress
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.geometry.panel import Panel
+from cadpanel.reference.model import Reference
+
+
+class Attempts:
+    """Fits of one reference.
+
+    Attributes:
+        reference: what is approximated.
+        settings: how.
+        over: whether the time is over, or somebody said so.
+    """
+
+    def __init__(
+        self, reference: Reference, settings: FitSettings, progress: Progress | None, time_limit: float | None
+    ) -> None:
+        """The clock starts now."""
+        self.reference, self.settings, self.over = reference, settings, False
+        self._progress, self._began = progress, time.perf_counter()
+        self._deadline = None if time_limit is None else self._began + time_limit
+
+    def posed(self, features: Sequence[PanelFeature]) -> tuple[Problem, tuple[Array, ...]]:
+        """The panels with these features; see `fitting.problem.pose`."""
+        return pose(self.reference, features, self.settings.blend)
+
+    def fit(self, features: Sequence[PanelFeature], after: FitResult | None = None) -> FitResult:
+        """Fit panels that have these features, from their local fits, and from another fit of theirs if there is one.
+
+        Raises:
+            PanelError: a panel is nothing that its feature could approximate.
+        """
+        problem, starts = self.posed(features)
+        alone = fit_local(problem, self.reference, starts, self.settings)
+        if method_for(self.settings) == LOCAL:
+            return self._result(problem, alone.unknowns, alone)
+        begin = [alone.unknowns] if after is None else [alone.unknowns, after.unknowns]
+        return self._together(problem, begin, method_for(self.settings))
+
+    def fit_together(self, problem: Problem, alone: Array) -> FitResult:
+        """Fit panels whose local fits (panels, size) are known.
+
+        Raises:
+            PanelError: a panel's local fit is no approximation of it.
+        """
+        refuse_hopeless(problem, self.reference, alone)
+        return self._together(problem, [alone], method_for(self.settings))
+
+    def try_together(self, problem: Problem, alone: Array, *, closing: bool = False) -> FitResult:
+        """Show whether the features of panels whose local fits (panels, size) are known will do.
+
+        Args:
+            problem: the panels.
+            alone: their local fits.
+            closing: tighten seams even where panels deviate too far already.
+
+        Raises:
+            PanelError: a panel's local fit is no approximation of it.
+        """
+        refuse_hopeless(problem, self.reference, alone)
+        method = method_for(self.settings)
+        if method == Concurrent():
+            method = Trial((lambda _: False) if closing else self._too_far)
+        return self._together(problem, [alone], method)
+
+    def _together(self, problem: Problem, begin: Sequence[Array], method: Method) -> FitResult:
+        return self._result(problem, begin[0], method.fit(problem, begin, self.settings, self._tell))
+
+    def _result(self, problem: Problem, alone: Array, fitted: Fitted) -> FitResult:
+        how = self.settings
+        measures = measure(panel_shapes(problem, fitted.unknowns), self.reference)
+        return FitResult(
+            reference=self.reference,
+            settings=how,
+            shapes=measures.shapes,
+            measures=measures,
+            unknowns=fitted.unknowns,
+            baselines=Baselines(
+                reference=self.reference, settings=how, problem=problem, alone=alone, measured={how.method: measures}
+            ),
+            tolerance_met=keeps_limits(measures, how),
+            starts=fitted.starts,
+            agreed=fitted.agreed,
+            iterations=fitted.iterations,
+            stopped=fitted.stopped,
+            prices=fitted.prices,
+            seconds=time.perf_counter() - self._began,
+        )
+
+    def _too_far(self, shapes: Sequence[Panel]) -> bool:
+        most = self.settings.max_deviation
+        return most is not None and float(largest_deviations(shapes, self.reference).max()) > most
+
+    def _tell(self, step: int, excess: float, rms: float) -> bool:
+        """Tell of a step; whether to go on."""
+        if self._progress is not None:
+            answer = self._progress(self.settings.method, step, excess, rms)
+            self.over |= answer is not None and not answer
+        self.over |= self._deadline is not None and time.perf_counter() > self._deadline
+        return not self.over

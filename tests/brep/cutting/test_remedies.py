@@ -1,0 +1,69 @@
+"""What is said where a cut fails: what is known, and what would help only where it has been seen to."""
+
+import pytest
+
+from cadpanel.brep.cutting import by_length, lip_band, ways
+from cadpanel.brep.kernel.shapes import compound_of
+from cadpanel.brep.read import read_reference
+from cadpanel.brep.skin.strip import NoStripError
+from cadpanel.brep.splitting.splitter import UncutError
+from cadpanel.errors import OverlapError, PanelError, ReferenceFileError
+from cadpanel.reference.settings import ReferenceSettings
+from tests.cuts import model_of, panels_of
+from tests.knife_edges import aerofoil_faces
+from tests.model_files import strip_faces, write_shape
+
+
+def test_panel_that_reaches_round_a_knife_edge_is_called_so(tmp_path):
+    path = write_shape(tmp_path / "wing.brep", compound_of(aerofoil_faces((0.0, 5000.0))))
+    with pytest.raises(PanelError, match=r"in 'wing.brep', two of its corners lie on each other: its sides meet in"):
+        read_reference(path, ReferenceSettings(unit="mm", divide=5))
+
+
+@pytest.mark.parametrize(
+    ("works", "end"), [((7,), r"\); into 7 panels it can be cut\.$"), ((5,), r"\); into 5 pan"), ((), r"\)\.$")]
+)
+def test_another_number_of_panels_is_named_only_where_it_can_be_cut(monkeypatch, works, end):
+    cut = by_length.cut_lengths
+
+    def stubborn(surface, how, source, tolerance):
+        if how.count not in works:
+            raise UncutError("The CAD kernel cannot split face 1 of 'roof.step' (it gives up).")
+        return cut(surface, how, source, tolerance)
+
+    monkeypatch.setattr(ways, "cut_lengths", stubborn)
+    with pytest.raises(ReferenceFileError, match=end):
+        panels_of(model_of(*strip_faces()), divide=6)
+
+
+@pytest.mark.parametrize(
+    ("works", "end"), [((270.0,), "; a band of 270 mm can be cut"), ((), "it, nor are bands of nearly that width")]
+)
+def test_another_width_of_a_band_is_named_only_where_it_can_be_cut(monkeypatch, works, end):
+    cut = lip_band._band
+
+    def stubborn(surface, width, source, tolerance):
+        if width not in works:
+            raise lip_band._UncutError("The kernel does not cut it")
+        return cut(surface, width, source, tolerance)
+
+    monkeypatch.setattr(lip_band, "_band", stubborn)
+    with pytest.raises(ReferenceFileError, match=end):
+        panels_of(model_of(*strip_faces()), divide=6, lip=300.0)
+
+
+def test_what_can_be_divided_without_a_band_is_said_to(monkeypatch):
+    def edgeless(*_arguments):
+        raise NoStripError("The surface is no strip that could be divided along its length.")
+
+    monkeypatch.setattr(by_length, "lip_band", edgeless)
+    with pytest.raises(ReferenceFileError, match="all of it can be divided: leave the band out"):
+        panels_of(model_of(*strip_faces()), divide=6, lip=300.0)
+
+
+def test_panels_that_were_cut_here_are_not_to_be_deleted():
+    error = OverlapError("A", "roof.step", "a part of it covers panel 'B'", "trim or delete one of the two")
+    assert str(error).endswith("trim or delete one of the two.")
+    said = str(error.of_a_cut())
+    assert "delete" not in said
+    assert said.endswith("both were cut from its skin, which comes so close to itself there.")

@@ -123,7 +123,8 @@ def find_loops(panel: RawPanel, source: str, tolerance: float, count: int) -> tu
     check_faces(panel, source)
     close = _touch_tolerance(panel)
     even = np.linspace(0.0, 1.0, count)
-    for bridged in dict.fromkeys((close, max(close, min(tolerance, BRIDGED_PART * narrowest(panel))))):
+    # The widest gap first: unbridged, two parts of a strip have two borders, as a ring has.
+    for bridged in dict.fromkeys((max(close, min(tolerance, BRIDGED_PART * narrowest(panel))), close)):
         whole = panel_edges(panel, bridged)
         for edges in (whole, split_at_vertices(whole, bridged)):
             walk = _walk_along(edges, panel, bridged)

@@ -22,11 +22,12 @@ from cadpanel.solver.barrier import Barrier
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.bounds import bounded_step
 from cadpanel.solver.held_model import HeldModel, Point
+from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 
 # Damping: a share of the free cost's own Gauss-Newton matrix, and how much of its diagonal's unit stands in for rows of
 # zeros. It never falls below the first: constraints that change sides from step to step would let it oscillate.
-_LEAST_DAMPING, _MOST_DAMPING, _IDLE = 0.03, 1e6, 1e-4
-_MOST_GROWTH, _LEAST_DROP = 64.0, 0.2
+_DAMPING = Nielsen(least=0.03, most=1e6, drop=0.2, rise=2.0)
+_IDLE = 1e-4
 # After so many refusals that damping grows by this factor, multipliers begin anew.
 _STUCK = 16.0
 # The barrier begins with this share of the cost, falls by this factor whenever the steps settle, and ends where all its
@@ -144,7 +145,7 @@ class _Run:
         self.pattern, self.bounds = model.pattern, model.bounds
         self.point = model.at(self.bounds.clip(start))
         self.vectors_held = sum(one.hold.radius.size for one in model.held)
-        self.growth = np.full(self.pattern.components, 2.0)
+        self.growth = np.full(self.pattern.components, FIRST_GROWTH)
         self.lag = _LAG
         if after is None:
             self._begin()
@@ -166,7 +167,7 @@ class _Run:
         self.widest = max((float(np.linalg.norm(v, axis=-1).max(initial=0.0)) for _, v in giving), default=0.0)
         for barrier, vectors in zip(self.barriers, self.point.vectors, strict=True):
             barrier.open(vectors, self.widest, self.lag, self.mu)
-        self.damping = np.full(self.pattern.components, _LEAST_DAMPING)
+        self.damping = np.full(self.pattern.components, _DAMPING.least)
 
     def _resume(self, after: Ended) -> None:
         self.mu, self.widest = 4.0 * after.mu, 0.0
@@ -209,8 +210,8 @@ class _Run:
         work = [barrier.add_to(normal, vectors, rates, self.mu, damping) for barrier, vectors, rates in parts]
         bounded = bounded_step(pattern, normal, np.zeros_like(point.unknowns), point.unknowns, self.bounds)
         if bounded is None:
-            self.damping = np.minimum(10.0 * self.damping, _MOST_DAMPING)
-            return bool((self.damping >= _MOST_DAMPING).all())
+            self.damping = np.minimum(10.0 * self.damping, _DAMPING.most)
+            return bool((self.damping >= _DAMPING.most).all())
         moved = [barrier.moved(rates, bounded.step) for barrier, _, rates in parts]
         with np.errstate(all="ignore"):
             gradient = np.zeros_like(normal.gradient)
@@ -228,7 +229,7 @@ class _Run:
             self.lag = min(_MOST_LAG, self.lag**0.5)
         else:
             self.lag = float(np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG))
-        self._damp(gain, failed)
+        self.damping, self.growth = _DAMPING.after(self.damping, self.growth, gain, failed)
         cost = self._cost()
         settled = bool(
             not failed.any()
@@ -302,13 +303,6 @@ class _Run:
             ahead = self.model.at(trial)
             merit = self._merit(ahead)
         return ahead, np.where(np.isfinite(merit), merit, np.inf)
-
-    def _damp(self, gain: Array, failed: BoolArray) -> None:
-        """Nielsen's rule: damping shrinks smoothly with the gain and grows ever faster on refusals."""
-        drop = np.maximum(_LEAST_DROP, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
-        risen = np.maximum(self.damping, 1e-4) * self.growth * 2.0
-        self.damping = np.clip(np.where(failed, risen, self.damping * drop), _LEAST_DAMPING, _MOST_DAMPING)
-        self.growth = np.where(failed, np.minimum(self.growth * 2.0, _MOST_GROWTH), 2.0)
 
     def _merit(self, point: Point) -> Array:
         """(count,) the cost with all penalties."""

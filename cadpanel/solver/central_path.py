@@ -17,7 +17,7 @@ from cadpanel.arrays import Array
 _NEARLY_NONE = 1e-300
 
 
-def central_weight(c: Array, mu: float, most: Array) -> Array:
+def central_weight(c: Array, mu: Array | float, most: Array) -> Array:
     """The w between 0 and `most` = nu at which c = mu / (nu - w) - mu / w."""
     m = mu / most
     # With w = nu y: c y^2 + (2 m - c) y - m = 0, solved such that nothing cancels.
@@ -30,7 +30,7 @@ def central_weight(c: Array, mu: float, most: Array) -> Array:
     return weight
 
 
-def penalty(c: Array, mu: float, most: Array) -> Array:
+def penalty(c: Array, mu: Array | float, most: Array) -> Array:
     """The least of nu p - mu log p - mu log(p - c) over p, but for what does not depend on c."""
     weight = central_weight(c, mu, most)
     # p = mu / (nu - w) and p - c = mu / w; nu p = mu + w p and w p = w c + mu.

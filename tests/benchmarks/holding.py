@@ -28,7 +28,8 @@ from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.solver.interior_point import Limits, interior_point
+from cadpanel.solver.ended import Limits
+from cadpanel.solver.interior_point import interior_point
 from cadpanel.terms.term import HeldTerm
 from fixtures.arrays import reference
 from fixtures.grids import dome, grid

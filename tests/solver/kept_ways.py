@@ -15,8 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from cadpanel.solver.ended import Limits
 from cadpanel.solver.hold import Hold
-from cadpanel.solver.interior_point import Limits, interior_point
+from cadpanel.solver.interior_point import interior_point
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
 
 # Rounding grows along a way; so far it is nothing.

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.holding import MARGIN, gap_price, held_within, seam_terms
+from cadpanel.fitting.methods.holding import MARGIN, gap_price, held_within, seam_terms, stopped_as
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.weighted import Weighted
@@ -17,6 +17,8 @@ from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.solver.components import Components
+from cadpanel.solver.giving_way import HeldSolution
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.arc_gap import ArcGap
@@ -71,30 +73,44 @@ def _hold_seams(
             gap.hold.radius = _ARC_SHARE * gap.hold.radius
     model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
     found = held_within(problem, model, gathered, local=local, tell=progress)
-    iterations += found.iterations
-    stopped = found.stopped
-    # Measure whole seams, tighten those that are too wide, go on.
+    found = _tightened(problem, model, found, gaps, local, settings, progress)
+    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
+    price = gap_price(problem, model, found, settings.gap_tolerance) if found.held else None
+    return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), gap_price=price)
+
+
+def _tightened(
+    problem: Problem,
+    model: HeldObjective,
+    found: HeldSolution,
+    gaps: Sequence[SeamTerm],
+    local: Array,
+    settings: FitSettings,
+    progress: Progress | None,
+) -> HeldSolution:
+    """Measure whole seams, tighten those that are too wide, go on; each connected component for itself."""
+    blocks = Components.of(model.pattern)
+    seams = blocks.seen_by(np.array([seam.panels[0] for seam in problem.met], dtype=np.intp))
     for tightening in range(_TIGHTENINGS + 1):
-        if stopped not in (Stop.HELD, Stop.STEP_LIMIT):
-            break
+        held = np.array([stop in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         seam_gap, _ = along_seams(panel_shapes(problem, found.unknowns), problem.met)
         excess = seam_gap / settings.gap_tolerance
-        if excess.max(initial=0.0) <= 1.0:
+        widest = seams.largest(excess)
+        wide = held & ~(widest <= 1.0)
+        if not wide.any():
             break
-        if tightening == _TIGHTENINGS or not excess.max() < _NEARLY:
-            stopped = Stop.OPEN_BETWEEN
+        far = wide & ((tightening == _TIGHTENINGS) | ~(widest < _NEARLY))
+        found = found.saying(Stop.OPEN_BETWEEN, far)
+        wide &= ~far
+        if not wide.any():
             break
-        share = np.where(excess > 1.0, _AIM / excess, 1.0)
+        share = np.where((excess > 1.0) & wide[seams.label], _AIM / np.maximum(excess, 1.0), 1.0)
         for gap in gaps:
             if isinstance(gap, ArcGap):
                 gap.straighten(problem.state(found.unknowns))
             gap.hold.tighten(share[gap.seams.index])
-        found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
-        iterations += found.iterations
-        stopped = found.stopped
-    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
-    price = gap_price(problem, model, found, settings.gap_tolerance) if stopped is Stop.HELD else None
-    return Fitted(found.unknowns, iterations, stopped, gap_price=price)
+        found = held_within(problem, model, found.unknowns, local=local, only=wide, after=found, tell=progress)
+    return found
 
 
 def _gather(problem: Problem, gaps: Sequence[SeamTerm], limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.methods.method import Progress
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
+from cadpanel.solver.components import Components
+from cadpanel.solver.ended import Limits
 from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
-from cadpanel.solver.interior_point import Ended, Limits
+from cadpanel.solver.stop import Stop
 
 # Gaps and drifts are held a little inside what the user allows, so that rounding in a file cannot break the promise.
 MARGIN = 1e-3
@@ -51,7 +53,8 @@ def held_within(
     start: Array,
     *,
     local: Array,
-    after: Ended | None = None,
+    only: BoolArray | None = None,
+    after: HeldSolution | None = None,
     tell: Progress | None = None,
     costly: bool = True,
 ) -> HeldSolution:
@@ -62,16 +65,27 @@ def held_within(
         model: what is to be small, and what is held.
         start: (panels, size) unknowns to begin from.
         local: (panels, size) the local fits; no result may deviate beyond a multiple of theirs.
-        after: an end with slightly other tolerances to go on from.
+        only: (components,) which connected components are to be gone on with; all where it is None.
+        after: a solution with slightly other tolerances to go on from.
         costly: whether a deviation may be too large for any tolerance; not where only what panels must keep to is held.
         tell: told the step, the largest excess over a tolerance, and the RMS deviation in mm; whether to go on.
     """
-    best_alone = float(problem.deviation.cost(problem.state(local)).sum())
-    most = np.inf if not costly else max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)
-    exact = 0.5 * problem.panels * _EXACT**2
+    blocks = Components.of(model.pattern)
+    alone = blocks.total(problem.deviation.cost(problem.state(local)))
+    # Half the squares of all panels' lengths: shares of a length count against them.
+    lengths = 0.5 * blocks.total(model.lengths**2)
+    most = np.maximum(_MOST_MULTIPLE**2 * alone, lengths * _MOST_SHARE**2) if costly else np.inf
 
     def told(step: int, excess: float, cost: float) -> bool:
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    return hold_or_give_way(model, begin, Limits(least_cost=exact), most_cost=most, after=after, tell=told)
+    limits = Limits(least_cost=lengths * _EXACT**2)
+    return hold_or_give_way(model, begin, limits, most_cost=most, only=only, after=after, tell=told)
+
+
+def stopped_as(found: HeldSolution) -> Stop:
+    """Why all of it stopped: as what exceeds its tolerance most, or else as whatever did not come to rest."""
+    if (found.excess > 1.0).any():
+        return found.stopped[int(found.excess.argmax())]
+    return next((stop for stop in found.stopped if stop is not Stop.HELD), Stop.HELD)

@@ -47,8 +47,8 @@ _ROUNDING, _TINY = 1e-9, 1e-30
 # The cost of a start that costs nothing itself is taken for this share of the squares of what is too long.
 _OPEN = 0.005
 
-Told = Callable[[int, float, float], bool]
-"""Told the step, the largest |v| / tau and the cost; whether to go on."""
+Told = Callable[[int, float, Array], bool]
+"""Told the step, the largest |v| / tau and the costs (count,) of the blocks; whether to go on."""
 
 
 def interior_point(
@@ -160,7 +160,7 @@ class _Run:
             self._step()
             if self.tell is not None:
                 beyond = np.maximum(self.now.firm, self.now.excess * self.ease)[self.moving].max()
-                stopped = not self.tell(steps, float(beyond), float(self.now.cost.sum()))
+                stopped = not self.tell(steps, float(beyond), self.point.cost)
         return Ended(
             now=self.now,
             best=self.best,

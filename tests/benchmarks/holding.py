@@ -150,8 +150,7 @@ def _row(label: str, fit: Callable[..., cp.FitResult], of: cp.Reference, how: Fi
 
 
 def _rms(problem: Problem, unknowns: Array) -> float:
-    cost = float(problem.deviation.cost(problem.state(unknowns)).sum())
-    return problem.rms(cost) * problem.place.length
+    return problem.rms(problem.deviation.cost(problem.state(unknowns))) * problem.place.length
 
 
 class _DoneError(Exception):

@@ -107,7 +107,7 @@ def test_unknowns_keep_to_their_bounds():
 
 def test_every_step_is_told_and_anybody_may_end_it():
     model = held_chain(np.random.default_rng(1).normal(size=(6, 2)), 0.1)
-    told: list[tuple[int, float, float]] = []
+    told: list[tuple[int, float, Array]] = []
 
     def tell(*args):
         told.append(args)
@@ -117,7 +117,7 @@ def test_every_step_is_told_and_anybody_may_end_it():
     assert end.told_to_stop
     assert not end.settled
     assert [step for step, _, _ in told] == [1, 2, 3]
-    assert told[-1][2] == model.free_cost(end.now.unknowns)
+    assert told[-1][2].sum() == model.free_cost(end.now.unknowns)
 
 
 def test_going_on_with_its_multipliers_takes_fewer_steps():
@@ -130,7 +130,7 @@ def test_going_on_with_its_multipliers_takes_fewer_steps():
     costs: list[float] = []
 
     def tell(*args):
-        costs.append(args[2])
+        costs.append(args[2].sum())
         return True
 
     interior_point(held_chain(targets, 0.099), first.best.unknowns, Limits(), after=first, tell=tell)

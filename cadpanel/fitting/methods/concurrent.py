@@ -132,5 +132,5 @@ def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     state = problem.state(unknowns)
     held: list[HeldTerm] = [*seam_terms(problem, settings.gap_tolerance), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
-    rms = problem.rms(float(problem.deviation.cost(state).sum()))
+    rms = problem.rms(problem.deviation.cost(state))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -40,11 +40,13 @@ def gap_price(problem: Problem, model: HeldObjective, found: HeldSolution, toler
         found: where it ended.
         tolerance: of gaps, mm.
     """
-    pairs = zip(model.held, found.end.multipliers, strict=True)
-    pull = sum(float(np.sum(weight * term.hold.radius**2)) for term, weight in pairs if term.hold.gives_way)
-    cost = float(problem.deviation.cost(problem.state(found.unknowns)).sum())
-    rms = problem.rms(cost)
-    return problem.place.length * pull / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
+    pull = np.zeros(problem.panels)
+    for term, weight in zip(model.held, found.end.multipliers, strict=True):
+        if term.hold.gives_way:
+            pull += np.bincount(term.blocks[0], np.sum(weight * term.hold.radius**2, axis=1), minlength=problem.panels)
+    rms = problem.rms(problem.deviation.cost(problem.state(found.unknowns)))
+    fallen = problem.place.length * float(problem.areas @ pull)
+    return fallen / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
 
 
 def held_within(
@@ -76,7 +78,7 @@ def held_within(
     lengths = 0.5 * blocks.total(model.lengths**2)
     most = np.maximum(_MOST_MULTIPLE**2 * alone, lengths * _MOST_SHARE**2) if costly else np.inf
 
-    def told(step: int, excess: float, cost: float) -> bool:
+    def told(step: int, excess: float, cost: Array) -> bool:
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)

@@ -119,7 +119,7 @@ def _fit(
         return watch.tell(how.method, step, excess, rms)
 
     method = method_for(how)
-    chosen = local if method == LOCAL else method.fit(posed, [local.unknowns], how, tell)
+    chosen = local if method == LOCAL else method.fit(posed, [local.unknowns, *starts], how, tell)
     measures = measure(panel_shapes(posed, chosen.unknowns), reference)
     return FitResult(
         reference=reference,

@@ -15,6 +15,8 @@ import numpy as np
 from cadpanel.arrays import Array
 
 _NEARLY_NONE = 1e-300
+# What is left of the greatest weight at least: also a tenth of it is to be seen beside that weight.
+_NEARLY_ALL = 1e-14
 
 
 def central_weight(c: Array, mu: Array | float, most: Array) -> Array:
@@ -26,7 +28,7 @@ def central_weight(c: Array, mu: Array | float, most: Array) -> Array:
     share = np.where(
         slope > 0.0, 2.0 * m / np.maximum(slope + root, _NEARLY_NONE), 1.0 - 2.0 * m / (np.abs(c) + 2.0 * m + root)
     )
-    weight: Array = most * np.clip(share, _NEARLY_NONE, 1.0 - 1e-16)
+    weight: Array = most * np.clip(share, _NEARLY_NONE, 1.0 - _NEARLY_ALL)
     return weight
 
 

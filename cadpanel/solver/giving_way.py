@@ -8,6 +8,7 @@ what cannot be held in one opens nothing in another.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,15 +21,24 @@ from cadpanel.solver.interior_point import Told, interior_point
 from cadpanel.solver.stop import Stop
 
 # The factor is known closely enough where the next one would be nearer than this, and is looked for this often.
-_CLOSE, _TRIES = 1.1, 16
+_CLOSE, _TRIES = 1.05, 20
 # Steps at most for one factor, from the last one that held; no more than this is gained by a single one.
 _STEPS, _MOST_NARROWED = 80, 1.7
 # Steps after it was told to end.
 _LAST_STEPS = 12
-# So wide that nothing which may give way is held at all.
-_FREE = 1e6
+# By which factor the cost may rise that holding what must hold takes by itself.
+_AGAIN = 2.0
+# So many of a component's lengths wide, nothing which may give way is held at all.
+_FREE = 1e4
+# To so many digits distances are what they are beside each other.
+_DIGITS = 9
 # A result that exceeds its distances by less holds them: what is asked for is asked for with a margin.
 _HOLDS = 1.0 + 1e-6
+
+
+Elsewhere = Callable[[BoolArray, Array], tuple[Array, int]]
+"""Told which blocks (count,) do not hold what they must, and unknowns; other unknowns at which these do, as far as they
+can by themselves, and how many linear systems were solved for them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +83,7 @@ def hold_or_give_way(
     most_cost: Array | float = np.inf,
     only: BoolArray | None = None,
     after: HeldSolution | None = None,
+    elsewhere: Elsewhere | None = None,
     tell: Told | None = None,
 ) -> HeldSolution:
     """The smallest cost at which all held vectors stay within their distances, or those that must and the rest nearly.
@@ -84,9 +95,10 @@ def hold_or_give_way(
         most_cost: free cost that no distance is worth which may give way; of each component (components,), or one.
         only: (components,) those that move; all others stay as `after` left them. All move if it is None.
         after: a solution of the same model with slightly other distances, to go on from.
+        elsewhere: where to begin anew if what must hold does not.
         tell: told of every step.
     """
-    return _Search(model, limits, most_cost, tell).run(start, only, after)
+    return _Search(model, limits, most_cost, elsewhere, tell).run(start, only, after)
 
 
 class _Search:
@@ -95,13 +107,23 @@ class _Search:
     Attributes:
         steps: linear systems solved so far.
         told: whether it was told to stop.
+        costly: (components,) where something narrower held, but cost too much.
     """
 
-    def __init__(self, model: HeldModel, limits: Limits, most_cost: Array | float, tell: Told | None) -> None:
-        self._model, self._limits, self._tell = model, limits, tell
+    def __init__(
+        self,
+        model: HeldModel,
+        limits: Limits,
+        most_cost: Array | float,
+        elsewhere: Elsewhere | None,
+        tell: Told | None,
+    ) -> None:
+        self._model, self._limits, self._elsewhere, self._tell = model, limits, elsewhere, tell
         self._blocks = Components.of(model.pattern)
         self._most_cost = most_cost
+        self._asked: Array | float = 1.0
         self.steps, self.told = 0, False
+        self.costly = np.zeros(self._blocks.count, dtype=bool)
 
     def run(self, start: Array, only: BoolArray | None, after: HeldSolution | None) -> HeldSolution:
         """See `hold_or_give_way`."""
@@ -109,9 +131,9 @@ class _Search:
         first = self._steps_from(start, 1.0, moving, self._limits, after=None if after is None else after.end)
         if after is not None:
             first = after.end.mixed(first, moving, self._blocks)
-        cheap = self._cheap(first.best)
-        held = _holds(first.best) & cheap
+        held = _holds(first.best) & self._cheap(first.best)
         rest = moving & ~held
+        self.costly |= rest & _holds(first.best)
         told, kept = self.told, first
         if rest.any():
             kept = self._ended_early(start, first, rest) if told else self._opened(start, first, rest)
@@ -127,40 +149,52 @@ class _Search:
             elif _holds(kept.best, kept.ease)[component]:
                 why[component] = Stop.HELD
             else:
-                why[component] = Stop.TOO_COSTLY if _holds(first.best)[component] else Stop.STALLED
+                why[component] = Stop.TOO_COSTLY if self.costly[component] else Stop.STALLED
         before = 0 if after is None else after.iterations
         return HeldSolution(kept, tuple(why), before + self.steps)
 
     def _opened(self, start: Array, first: Ended, rest: BoolArray) -> Ended:
         """What holds with the narrowest distances in those components that do not hold them as they are."""
-        search = replace(self._limits, steps=_STEPS)
-        kept = first.mixed(self._steps_from(start, _FREE, rest, search), rest, self._blocks)
-        lost = rest & (kept.best.firm > _HOLDS)
-        if lost.any() and not self.told:  # from elsewhere it may be nearer
-            other = self._steps_from(first.now.unknowns, _FREE, lost, search)
-            kept = kept.mixed(other, lost & (other.best.firm < kept.best.firm), self._blocks)
-            lost = rest & (kept.best.firm > _HOLDS)
-        # What must hold cannot: whatever comes nearest.
-        back = lost & (first.best.firm <= kept.best.firm)
-        open_ = rest & ~lost
-        nearer = first.best.excess < kept.best.excess * kept.ease
-        back |= open_ & (first.best.firm <= _HOLDS) & self._cheap(first.best) & nearer
-        return self._narrowed(kept.mixed(first, back, self._blocks), open_)
+        with _AskedNothing(self._model, self._blocks) as self._asked:
+            kept = first.mixed(self._steps_from(start, _FREE, rest, self._few(_STEPS)), rest, self._blocks)
+            kept = self._brought_back(kept, first.now.unknowns, rest)
+            # Where what must hold costs more by itself, the rest may cost as much again.
+            self._most_cost = np.where(rest, np.maximum(self._most_cost, _AGAIN * kept.best.cost), self._most_cost)
+            lost = kept.best.firm > _HOLDS
+            kept = self._narrowed(kept, rest & ~lost, self._asked)
+        self._asked = 1.0
+        # As it is beside what was asked for; and where what must hold cannot, whatever comes nearest.
+        kept = first.mixed(self._steps_from(kept.best.unknowns, 1.0, rest, self._few(0)), rest, self._blocks)
+        return kept.mixed(first, rest & lost & (first.best.firm <= kept.best.firm), self._blocks)
 
-    def _narrowed(self, kept: Ended, open_: BoolArray) -> Ended:
-        """The end with the narrowest distances that hold in some components."""
-        search = replace(self._limits, steps=_STEPS)
-        least, widest = np.zeros(self._blocks.count), np.maximum(kept.best.excess * kept.ease, 1.0)
+    def _brought_back(self, kept: Ended, now: Array, where: BoolArray) -> Ended:
+        """The same, from elsewhere where what must hold does not: the caller knows where, or else from `now`."""
+        lost = where & (kept.best.firm > _HOLDS)
+        if not lost.any():
+            return kept
+        if self._elsewhere is not None:
+            now, steps = self._elsewhere(lost[self._blocks.label], kept.now.unknowns)
+            self.steps += steps
+        return self._better(kept, self._steps_from(now, _FREE, lost, self._few(_STEPS)), lost)
+
+    def _narrowed(self, kept: Ended, open_: BoolArray, asked: Array) -> Ended:
+        """The end with the narrowest distances that hold in some components, or those that were asked for."""
+        least, widest = np.zeros(self._blocks.count), kept.best.excess * kept.ease
         for _ in range(_TRIES):
-            tried = open_ & (widest > np.maximum(_CLOSE * least, 1.0))
+            tried = open_ & (widest > np.maximum(_CLOSE * least, asked))
             if self.told or not tried.any():
                 break
-            trial = np.maximum.reduce([np.sqrt(least * widest), widest / _MOST_NARROWED, np.ones_like(widest)])
-            end = self._steps_from(kept.best.unknowns, trial, tried, search)
-            good = tried & _holds(end.best) & self._cheap(end.best)
-            kept = kept.mixed(end, good, self._blocks)
-            least = np.where(tried & ~good, trial, least)
-            widest = np.where(good, np.maximum(trial * end.best.excess, 1.0), widest)
+            trial = np.maximum(np.sqrt(least * widest), widest / _MOST_NARROWED)
+            end = self._steps_from(kept.best.unknowns, trial, tried, self._few(_STEPS))
+            reached = trial * end.best.excess
+            nearer = tried & (end.best.firm <= _HOLDS) & (reached < widest)
+            self.costly |= nearer & ~self._cheap(end.best)
+            nearer &= self._cheap(end.best)
+            # What came much nearer without holding had too few steps: it is gone on with from there.
+            much = nearer & ((reached <= _HOLDS * trial) | (_CLOSE * reached < widest))
+            least = np.where(tried & ~much, trial, least)
+            kept = kept.mixed(end, nearer, self._blocks)
+            widest = np.where(nearer, reached, widest)
         return kept
 
     def _ended_early(self, start: Array, first: Ended, rest: BoolArray) -> Ended:
@@ -171,7 +205,7 @@ class _Search:
         lost = rest & (kept.best.firm > _HOLDS)
         if lost.any():
             kept = self._better(kept, self._steps_from(start, _FREE, lost, self._few(_STEPS)), lost)
-        return kept
+        return self._brought_back(kept, first.now.unknowns, rest)
 
     def _better(self, one: Ended, other: Ended, where: BoolArray) -> Ended:
         """The one in which what must hold is nearer to holding, or as near and the rest exceeded less."""
@@ -190,12 +224,44 @@ class _Search:
         self, start: Array, ease: Array | float, only: BoolArray, limits: Limits, after: Ended | None = None
     ) -> Ended:
         """Steps of some components with distances so many times as wide."""
-        end = interior_point(self._model, start, limits, ease=ease, only=only, after=after, tell=self._tell)
+        end = interior_point(
+            self._model, start, limits, ease=ease, only=only, after=after, asked=self._asked, tell=self._tell
+        )
         self.steps += end.steps
         self.told |= end.told_to_stop
         return end
 
 
+class _AskedNothing:
+    """Distances that may give way as long as the components themselves, in place of those that were asked for.
+
+    The search for the least widening is the same then to the last digit whatever was asked for: who holds narrow
+    distances holds wide ones, and what cannot be held is exceeded by as much. Only what they are beside each other
+    stays.
+    """
+
+    def __init__(self, model: HeldModel, blocks: Components) -> None:
+        self._giving = [one for one in model.held if one.hold.gives_way]
+        self._radii = [one.hold.radius for one in self._giving]
+        self._of = [blocks.seen_by(one.blocks[0]) for one in self._giving]
+        self._lengths, narrowest = blocks.mean(model.lengths), np.full(blocks.count, np.inf)
+        for of, radius in zip(self._of, self._radii, strict=True):
+            narrowest = np.minimum(narrowest, of.smallest(radius))
+        self._narrowest = np.where(np.isfinite(narrowest), narrowest, self._lengths)
+
+    def __enter__(self) -> Array:
+        """(components,) what was asked for, by the lengths of the components."""
+        for one, of, radius in zip(self._giving, self._of, self._radii, strict=True):
+            beside = np.round(radius / of.each(self._narrowest), _DIGITS)
+            one.hold.radius = beside * of.each(self._lengths)
+        return np.asarray(self._narrowest / self._lengths)
+
+    def __exit__(self, *_: object) -> None:
+        """Ask for the same as before."""
+        for one, radius in zip(self._giving, self._radii, strict=True):
+            one.hold.radius = radius
+
+
 def _holds(best: Best, ease: Array | float = 1.0) -> BoolArray:
-    """(components,) where nothing exceeds distances that were widened by a factor, or nothing once it is 1."""
-    return np.asarray(np.maximum(best.firm, best.excess) * ease <= _HOLDS)
+    """(components,) where nothing exceeds its distance, though those that give way were widened by a factor."""
+    return np.asarray(np.maximum(best.firm, best.excess * ease) <= _HOLDS)

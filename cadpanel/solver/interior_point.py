@@ -59,6 +59,7 @@ def interior_point(
     ease: Array | float = 1.0,
     only: BoolArray | None = None,
     after: Ended | None = None,
+    asked: Array | float = 1.0,
     tell: Told | None = None,
 ) -> Ended:
     """The smallest cost at which all held vectors stay within their distances.
@@ -70,9 +71,10 @@ def interior_point(
         ease: distances that may give way count so many times as wide; one for each component (components,), or one.
         only: (components,) those that move; all others stay where they start. All move if it is None.
         after: an end of the same model with slightly other distances, to begin with its multipliers.
+        asked: the share of their distances, one for each component or one, that what is told of excesses counts by.
         tell: told of every step.
     """
-    return _Run(model, start, limits, ease, only, after, tell).ended()
+    return _Run(model, start, limits, ease, only, after).ended(asked, tell)
 
 
 class _Run:
@@ -90,9 +92,8 @@ class _Run:
         ease: Array | float,
         only: BoolArray | None,
         after: Ended | None,
-        tell: Told | None,
     ) -> None:
-        self.model, self.limits, self.tell = model, limits, tell
+        self.model, self.limits = model, limits
         self.pattern, self.bounds = model.pattern, model.bounds
         self.blocks = Components.of(self.pattern)
         self.of = [self.blocks.seen_by(one.blocks[0]) for one in model.held]
@@ -128,7 +129,8 @@ class _Run:
         for one, of, vectors in zip(self.model.held, self.of, self.point.vectors, strict=True):
             # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares
             # does.
-            far = np.maximum(np.sqrt(one.hold.squares(vectors)) - one.hold.radius, 0.0)
+            allowed = one.hold.radius * (of.each(self.ease) if one.hold.gives_way else 1.0)
+            far = np.maximum(np.sqrt(one.hold.squares(vectors)) - allowed, 0.0)
             beyond += of.total(np.sum(far**2, axis=1))
             if one.hold.gives_way:
                 giving += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
@@ -152,15 +154,15 @@ class _Run:
         for barrier, old in zip(self.barriers, after.barriers, strict=True):
             barrier.resume(old)
 
-    def ended(self) -> Ended:
+    def ended(self, asked: Array | float, tell: Told | None) -> Ended:
         """Step until every component has settled, or nothing is left of the steps, or somebody says so."""
         steps, stopped = 0, False
         while steps < self.limits.steps and self.goes_on.any() and not stopped:
             steps += 1
             self._step()
-            if self.tell is not None:
-                beyond = np.maximum(self.now.firm, self.now.excess * self.ease)[self.moving].max()
-                stopped = not self.tell(steps, float(beyond), self.point.cost)
+            if tell is not None:
+                beyond = np.maximum(self.now.firm, self.now.excess * self.ease / asked)[self.moving].max()
+                stopped = not tell(steps, float(beyond), self.point.cost)
         return Ended(
             now=self.now,
             best=self.best,

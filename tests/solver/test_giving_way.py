@@ -5,6 +5,7 @@ import pytest
 
 from cadpanel.solver.ended import Limits
 from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
+from cadpanel.solver.held_model import Point
 from cadpanel.solver.hold import Hold
 from cadpanel.solver.interior_point import interior_point
 from cadpanel.solver.stop import Stop
@@ -38,6 +39,19 @@ def test_what_cannot_be_held_is_exceeded_by_the_least_share():
     # In the middle both vectors have the length 1, twice what is asked for.
     assert found.excess == pytest.approx(2.0, rel=0.1)
     assert found.unknowns == pytest.approx(np.zeros((1, 2)), abs=0.1)
+
+
+def test_what_is_told_counts_in_what_was_asked_for_also_while_more_is_allowed():
+    told: list[float] = []
+
+    def tell(_step, excess, _cost):
+        told.append(excess)
+        return True
+
+    found = solve(between(0.05, 0.05), tell=tell)
+    # In the middle both vectors are twenty times as long as asked for.
+    assert min(told) >= 19.9
+    assert found.excess == pytest.approx(20.0, rel=0.05)
 
 
 def test_what_must_not_give_way_holds_and_the_other_gives_way():
@@ -116,3 +130,83 @@ def test_going_on_with_some_components_leaves_all_others_as_they_were():
     assert after.stopped == before.stopped == (Stop.STALLED, Stop.HELD)
     assert np.linalg.norm(np.diff(after.unknowns[3:], axis=0), axis=1).max() <= 0.45 + 1e-6
     assert after.iterations > before.iterations
+
+
+class Outside(HeldBatch):
+    """A point of a line held out of the middle, 1 - x^2 below a distance, whose slope vanishes in the middle."""
+
+    def vectors(self, unknowns):
+        return (1.0 - unknowns[self.blocks[0]] ** 2)[:, None]
+
+    def slopes(self, unknowns):
+        return (-2.0 * unknowns[self.blocks[0]][:, None, :, None],)
+
+
+class AroundTheMiddle(HeldTargets):
+    """A point that wants to be in the middle, where it must not be, and perhaps near a place beside it."""
+
+    def at(self, unknowns):
+        point = super().at(unknowns)
+        slopes = tuple(
+            batch.slopes(unknowns) if isinstance(batch, Outside) else batch.jacobians() for batch in self.held
+        )
+        return Point(point.unknowns, point.cost, point.normal, point.vectors, slopes)
+
+
+def around_the_middle(*near: HeldBatch) -> HeldTargets:
+    hold = Hold(np.array([[0.19]]), weight=0.0, one_sided=True, scale=np.ones((1, 1)))
+    return AroundTheMiddle(np.zeros((1, 1)), [Outside(hold, np.zeros((1, 1, 1)), (np.arange(1),)), *near])
+
+
+def test_what_must_hold_is_begun_elsewhere_where_it_does_not_come_to_hold():
+    asked = []
+
+    def elsewhere(blocks, now):
+        asked.append((blocks.tolist(), now.tolist()))
+        return np.array([[2.0]]), 5
+
+    stuck = solve(around_the_middle())
+    assert stuck.stopped == (Stop.STALLED,)
+    assert stuck.excess > 1.1
+    found = solve(around_the_middle(), elsewhere=elsewhere)
+    assert asked == [([True], [[0.0]])]
+    assert found.stopped == (Stop.HELD,)
+    assert found.unknowns[0, 0] == pytest.approx(0.9, abs=0.01)
+    # Whoever is told to stop keeps what must hold, too.
+    told = solve(around_the_middle(), elsewhere=elsewhere, tell=lambda *_: False)
+    assert told.stopped == (Stop.TOLD,)
+    assert abs(told.unknowns[0, 0]) >= 0.9 - 1e-6
+
+
+@pytest.mark.parametrize(("most_cost", "reached"), [(0.1, 1.2), (10.0, 0.0)])
+def test_what_must_hold_may_cost_whatever_it_takes_and_the_rest_as_much_again(most_cost, reached):
+    """A point that is to be at 2 and must be 0.9 off the middle: for twice what that costs it gets to 1.27."""
+    near = Hold(np.array([[0.1]]), weight=0.0, gives_way=True)
+    model = around_the_middle(HeldBatch(near, np.full((1, 1, 1), 2.0), (np.arange(1),)))
+    found = hold_or_give_way(model, np.array([[1.5]]), Limits(), most_cost=most_cost)
+    left = 2.0 - found.unknowns[0, 0]
+    if reached:
+        assert found.stopped == (Stop.TOO_COSTLY,)
+        assert np.sqrt(2.0) * 0.9 * 0.9 <= found.unknowns[0, 0] <= np.sqrt(2.0) * 0.9 * 1.01
+        assert found.excess == pytest.approx(left / 0.1, rel=1e-3)
+    else:
+        assert found.stopped == (Stop.HELD,)
+        assert left <= 0.1 + 1e-6
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_how_far_distances_are_exceeded_does_not_hang_on_what_was_asked_for(seed):
+    """What holds narrow ones holds wide ones, and what holds none is exceeded by as much."""
+    ends = float(np.random.default_rng(seed).uniform(3.0, 8.0))
+    exceeded = []
+    for radius in np.geomspace(0.01, 1.2 * ends, 8):
+        model = pulled(ends, float(radius))
+        found = hold_or_give_way(model, model.targets.copy(), Limits(least_cost=1e-6))
+        if found.excess[0] > 1.0 + 1e-6:
+            assert not found.held
+            exceeded.append(radius * found.excess[0])
+            assert radius < exceeded[0]
+    assert len(exceeded) > 3
+    assert exceeded == pytest.approx([exceeded[0]] * len(exceeded), rel=1e-6)
+    # Held at both ends, the middle is 0.01 nearer to either one.
+    assert exceeded[0] == pytest.approx(0.5 * ends - 0.01, rel=0.06)

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods.holding import MARGIN, gap_price, held_within, seam_terms, stopped_as
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
+from cadpanel.fitting.methods.restoring import restored
 from cadpanel.fitting.methods.weighted import Weighted
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, SeamTerm
@@ -48,7 +49,7 @@ class Concurrent(Method):
         """Fit all panels from their local fits, and from as many restarts as are asked for."""
         local = starts[0]
         return best_of_starts(
-            lambda start: _hold_seams(problem, start, local, settings, progress),
+            lambda start: _hold_seams(problem, start, starts, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
             local,
             settings,
@@ -60,7 +61,7 @@ class Concurrent(Method):
 
 
 def _hold_seams(
-    problem: Problem, start: Array, local: Array, settings: FitSettings, progress: Progress | None
+    problem: Problem, start: Array, starts: Sequence[Array], settings: FitSettings, progress: Progress | None
 ) -> Fitted:
     gaps: list[SeamTerm] = seam_terms(problem, settings.gap_tolerance * (1.0 - MARGIN))
     limits = problem.limits(settings, MARGIN)
@@ -72,8 +73,12 @@ def _hold_seams(
             gap.straighten(state)
             gap.hold.radius = _ARC_SHARE * gap.hold.radius
     model = HeldObjective(problem, [problem.deviation], [*gaps, *limits])
-    found = held_within(problem, model, gathered, local=local, tell=progress)
-    found = _tightened(problem, model, found, gaps, local, settings, progress)
+
+    def elsewhere(panels: BoolArray, now: Array) -> tuple[Array, int]:
+        return restored(problem, settings, np.flatnonzero(panels), [now, gathered, *starts])
+
+    found = held_within(problem, model, gathered, local=starts[0], elsewhere=elsewhere, tell=progress)
+    found = _tightened(problem, model, found, gaps, starts[0], settings, progress)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
     price = gap_price(problem, model, found, settings.gap_tolerance) if found.held else None
     return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), gap_price=price)

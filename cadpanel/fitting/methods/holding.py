@@ -10,7 +10,7 @@ from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Limits
-from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
+from cadpanel.solver.giving_way import Elsewhere, HeldSolution, hold_or_give_way
 from cadpanel.solver.stop import Stop
 
 # Gaps and drifts are held a little inside what the user allows, so that rounding in a file cannot break the promise.
@@ -20,7 +20,7 @@ MARGIN = 1e-3
 _MOST_MULTIPLE = 5.0
 _MOST_SHARE = 0.05
 # A panel that deviates by no more than this share of its length, RMS, is exact.
-_EXACT = 1e-8
+EXACT = 1e-8
 
 
 def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
@@ -46,7 +46,7 @@ def gap_price(problem: Problem, model: HeldObjective, found: HeldSolution, toler
             pull += np.bincount(term.blocks[0], np.sum(weight * term.hold.radius**2, axis=1), minlength=problem.panels)
     rms = problem.rms(problem.deviation.cost(problem.state(found.unknowns)))
     fallen = problem.place.length * float(problem.areas @ pull)
-    return fallen / (problem.panels * rms * tolerance) if rms > _EXACT else 0.0
+    return fallen / (problem.panels * rms * tolerance) if rms > EXACT else 0.0
 
 
 def held_within(
@@ -58,6 +58,7 @@ def held_within(
     only: BoolArray | None = None,
     after: HeldSolution | None = None,
     tell: Progress | None = None,
+    elsewhere: Elsewhere | None = None,
     costly: bool = True,
 ) -> HeldSolution:
     """Hold every held term within its tolerance, at the smallest deviation.
@@ -69,6 +70,7 @@ def held_within(
         local: (panels, size) the local fits; no result may deviate beyond a multiple of theirs.
         only: (components,) which connected components are to be gone on with; all where it is None.
         after: a solution with slightly other tolerances to go on from.
+        elsewhere: see `solver.giving_way`.
         costly: whether a deviation may be too large for any tolerance; not where only what panels must keep to is held.
         tell: told the step, the largest excess over a tolerance, and the RMS deviation in mm; whether to go on.
     """
@@ -82,8 +84,10 @@ def held_within(
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    limits = Limits(least_cost=lengths * _EXACT**2)
-    return hold_or_give_way(model, begin, limits, most_cost=most, only=only, after=after, tell=told)
+    limits = Limits(least_cost=lengths * EXACT**2)
+    return hold_or_give_way(
+        model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
+    )
 
 
 def stopped_as(found: HeldSolution) -> Stop:

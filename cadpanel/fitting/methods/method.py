@@ -52,7 +52,7 @@ class Method(ABC):
         Args:
             problem: what is to be fitted.
             starts: arrays (panels, size) of unknowns to begin with, the likeliest first: for the local fits what the
-                reference tells of the panels, for all other methods the local fits alone.
+                reference tells of the panels, for all other methods the local fits and then what these began with.
             settings: what the user asks.
             progress: told of every round, where a method goes in rounds.
         """

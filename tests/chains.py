@@ -171,6 +171,7 @@ def problem_of(
         ),
         outline=outline_near(layout, corners, random),
         lengths=np.ones(panels),
+        areas=np.ones(panels),
         seams=batches(layout, met, along, backwards, pair.reshape(-1)),
         pairs=coupled,
         bounds=(np.full((panels, layout.size), -np.inf), np.full((panels, layout.size), np.inf)),

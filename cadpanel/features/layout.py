@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.features.numbers import POWERS
 from cadpanel.features.rulings import PanelFeature, Walk
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -76,6 +77,15 @@ class Layout:
         for group in self.groups:
             used[group.panels, : len(group.feature.free)] = True
         return used
+
+    @cached_property
+    def powers(self) -> Array:
+        """(panels, size) the power of a length that each unknown counts in."""
+        powers = np.zeros((self.panels, self.size))
+        for group in self.groups:
+            feature = group.feature
+            powers[group.panels, : len(feature.free)] = [POWERS[feature.numbers[i].unit] for i in feature.free]
+        return powers
 
     def walk(self, unknowns: Array, *, derivatives: bool) -> tuple[Walk, ...]:
         """Walk all panels at the unknowns (panels, size), group by group."""

@@ -54,8 +54,9 @@ class Attempts:
         alone = fit_local(problem, self.reference, starts, self.settings)
         if method_for(self.settings) == LOCAL:
             return self._result(problem, alone.unknowns, alone)
-        begin = [alone.unknowns] if after is None else [alone.unknowns, after.unknowns]
-        return self._together(problem, begin, method_for(self.settings))
+        if after is not None:
+            return self._together(problem, [alone.unknowns, after.unknowns, *starts], Concurrent(goes_on=True))
+        return self._together(problem, [alone.unknowns, *starts], method_for(self.settings))
 
     def fit_together(self, problem: Problem, alone: Array) -> FitResult:
         """Fit panels whose local fits (panels, size) are known.

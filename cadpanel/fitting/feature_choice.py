@@ -13,7 +13,7 @@ from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.measures.fit import largest_deviations
 from cadpanel.fitting.methods.local import Local
-from cadpanel.fitting.problem import pose
+from cadpanel.fitting.problem import pose, unit_length
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
@@ -47,7 +47,7 @@ class Choice:
         if settings.max_deviation is None:
             raise ValueError("without a largest deviation every feature would do")
         self._reference, self._settings, self._largest = reference, settings, settings.max_deviation
-        self._length = float(np.mean([panel.length for panel in reference.panels]))
+        self._length = unit_length(reference)
         self._alone: dict[tuple[int, int], Array] = {}
         panels = len(reference.panels)
         self.deviations = np.full((panels, len(CHEAPEST_FIRST)), np.inf)

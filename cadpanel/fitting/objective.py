@@ -10,6 +10,7 @@ from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.problem import Problem
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.bounds import Bounds
+from cadpanel.solver.components import Components
 from cadpanel.solver.held_model import Point
 from cadpanel.terms.state import State
 from cadpanel.terms.term import HeldTerm, Term
@@ -66,6 +67,8 @@ class HeldObjective:
         held: the terms that are held.
         pattern: which panels are coupled.
         bounds: of the unknowns.
+        lengths: (panels,) the mean length of all panels that a panel is connected with.
+        powers: (panels, size) the power of a length that each unknown counts in.
     """
 
     def __init__(
@@ -83,6 +86,9 @@ class HeldObjective:
         self._free = Objective(of, terms, coupled=True)
         self.pattern, self.bounds = self._free.pattern, Bounds(*of.bounds)
         self._moving = moving
+        blocks = Components.of(self.pattern)
+        self.lengths = blocks.each(blocks.mean(of.lengths))[:, 0]
+        self.powers = of.layout.powers
 
     def starting_from(self, start: Array) -> Array:
         """The unknowns to begin with; those that may not move are fixed there from now on."""

@@ -20,6 +20,8 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start.begin import Start, start
 from cadpanel.reference.across_seams import AcrossSeams, across_seams
 from cadpanel.reference.model import Reference, Seam
+from cadpanel.solver.blocks import BlockPattern
+from cadpanel.solver.components import Components
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.deviation import Deviation
@@ -45,6 +47,7 @@ class Problem:
         deviation: the regression term.
         outline: the reference's corners.
         lengths: (panels,) the panels' lengths in units of the solver's length.
+        areas: (panels,) the mean area of those panels that each is connected with, by the mean of all.
         seams: who meets whom, in batches of seams that are alike.
         pairs: (pairs, 2) coupled panels.
         bounds: (panels, size) least and greatest unknowns.
@@ -57,6 +60,7 @@ class Problem:
     deviation: Deviation
     outline: Outline
     lengths: Array
+    areas: Array
     seams: tuple[SeamBatch, ...]
     pairs: IntArray
     bounds: tuple[Array, Array]
@@ -127,6 +131,7 @@ class Problem:
             deviation=self.deviation.take(panels),
             outline=replace(outline, corners=outline.corners[:, :most]),
             lengths=self.lengths[panels],
+            areas=self.areas[panels],
             seams=(),
             pairs=np.empty((0, 2), dtype=np.intp),
             bounds=(self.bounds[0][panels, : layout.size], self.bounds[1][panels, : layout.size]),
@@ -151,9 +156,9 @@ class Problem:
             moves[group.panels[:, None], held] = False
         return moves
 
-    def rms(self, cost: float) -> float:
-        """The RMS deviation of all panels in the solver's length, of the deviation term's cost."""
-        return float(np.sqrt(2.0 * cost / self.panels))
+    def rms(self, cost: Array) -> float:
+        """The RMS deviation of all panels in the solver's length, of the deviation term's cost (panels,)."""
+        return float(np.sqrt(2.0 * (self.areas * cost).sum() / self.panels))
 
     def deviations(self, unknowns: Array) -> tuple[Array, Array]:
         """RMS per panel (panels,), area-weighted, and signed distances (panels, m) of all samples, mm."""
@@ -178,6 +183,14 @@ class Problem:
         return result
 
 
+def unit_length(reference: Reference) -> float:
+    """The solver's length, mm: the panels' mean one, nearly.
+
+    It is a power of two: what it is of other panels is exactly what it is of these.
+    """
+    return float(2.0 ** np.round(np.log2(np.mean([panel.length for panel in reference.panels]))))
+
+
 def pose(
     reference: Reference,
     features: Sequence[PanelFeature],
@@ -191,14 +204,14 @@ def pose(
         reference: what is to be approximated.
         features: one a panel.
         blends: which stretches are to become the curved patches, where the user says so.
-        length: mm, the solver's; the panels' mean length if not given.
+        length: mm, the solver's; see `unit_length` if not given.
 
     Raises:
         PanelError: a panel is not what its feature is made for.
         SettingsError: a blend does not suit a panel.
     """
     check_blends(reference, features, blends)
-    length = float(np.mean([panel.length for panel in reference.panels])) if length is None else length
+    length = unit_length(reference) if length is None else length
     layout = Layout.of(features, length)
     samples = SampleArrays.of(reference)
     begin = start(reference, layout, samples, length, stretches(reference.panels, blends))
@@ -213,20 +226,27 @@ def _problem(
     begin: Start,
     allowed: tuple[IntArray, IntArray] | None,
 ) -> Problem:
-    """Turn a reference into arrays. Samples weigh by their area, such that the cost is half the mean square a panel."""
+    """Turn a reference into arrays.
+
+    Samples weigh by their area, such that the cost is half the mean square a panel; panels that nothing connects do not
+    know of each other's areas.
+    """
     # Positions relative to the middle of all: map-grid coordinates would cost digits in the gaps.
     centre = begin.origins.mean(axis=0)
     place = Placement(origins=begin.origins - centre, centre=centre, axes=begin.axes, length=begin.length)
     local = np.einsum("pmx,pxa->apm", samples.points - begin.origins[:, None], begin.axes) / begin.length
-    share = samples.weights / (samples.weights.sum() / len(samples.weights))
     seams, pairs = _seams(reference, layout)
+    blocks = Components.of(BlockPattern(layout.panels, layout.size, pairs))
+    area = samples.weights.sum(axis=1)
+    beside = blocks.each(blocks.mean(area))
     return Problem(
         names=tuple(panel.name for panel in reference.panels),
         layout=layout,
         place=place,
-        deviation=Deviation(np.ascontiguousarray(local), np.sqrt(share), allowed),
+        deviation=Deviation(np.ascontiguousarray(local), np.sqrt(samples.weights / beside), allowed),
         outline=outline_of(reference, layout, begin),
         lengths=np.array([panel.length for panel in reference.panels]) / begin.length,
+        areas=beside[:, 0] / area.mean(),
         seams=seams,
         pairs=pairs,
         bounds=natural_bounds(layout, begin.unknowns, begin.length),

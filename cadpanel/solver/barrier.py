@@ -25,9 +25,12 @@ _BAND = 10.0
 _LEAST_LEFT = 0.05
 _NEARLY_NONE = 1e-300
 
+Each = Array | float
+"""A number for each group, (groups, 1), or one for all."""
+
 
 @dataclass(frozen=True, slots=True)
-class _Work:
+class Work:
     """What a step's normal equations were made of, for a batch.
 
     Attributes:
@@ -60,7 +63,7 @@ class Barrier:
         most: (groups, vectors) the greatest that a multiplier may be.
     """
 
-    def __init__(self, held: HeldVectors, *, most: float, ease: float) -> None:
+    def __init__(self, held: HeldVectors, *, most: Each, ease: Each) -> None:
         """Hold a batch.
 
         Args:
@@ -72,27 +75,29 @@ class Barrier:
         hold = held.hold
         self.goal = hold.radius * ease if hold.gives_way else hold.radius
         self.tau = self.goal if hold.scale is None else hold.scale
-        self.most = np.full(hold.radius.shape, most)
+        self.most = np.broadcast_to(most, hold.radius.shape).astype(np.float64)
         self.weight = 0.5 * self.most
 
-    def open(self, vectors: Array, widest: float, lag: float, mu: float) -> None:
+    def open(self, vectors: Array, widest: Each, lag: Each, mu: Each) -> None:
         """Begin with distances that hold vectors (groups, vectors, d) nearly, see `follow`, and central multipliers."""
         if not self.held.hold.one_sided:
             self.tau = np.maximum(self._goal(widest), lag * np.linalg.norm(vectors, axis=-1))
         self.weight = central_weight(self.numbers(vectors), mu, self.most)
 
-    def follow(self, vectors: Array, widest: float, lag: float) -> None:
+    def follow(self, vectors: Array, widest: Each, lag: Each, where: BoolArray) -> None:
         """Narrow the distances; multipliers change such that the pull on the vectors stays as it is.
 
         Args:
             vectors: (groups, vectors, d).
             widest: to which distances that may give way are narrowed now, in the unit of the vectors.
             lag: no distance becomes less than this share of what its vector is now.
+            where: (groups, 1) which groups; all others stay as they are.
         """
         if self.held.hold.one_sided:
             return
         goal = self._goal(widest)
         tau = np.minimum(np.maximum(self.tau, goal), np.maximum(goal, lag * np.linalg.norm(vectors, axis=-1)))
+        tau = np.where(where, tau, self.tau)
         self.weight = self.weight * tau / self.tau
         self.tau = tau
 
@@ -101,13 +106,20 @@ class Barrier:
         self.most = old.most.copy()
         self.weight = old.weight if self.held.hold.one_sided else old.weight * self.tau / old.tau
 
-    def _goal(self, widest: float) -> Array:
+    def mixed(self, other: Barrier, where: BoolArray) -> Barrier:
+        """A barrier that is another one of the same vectors in some groups (groups, 1)."""
+        mixed = Barrier(self.held, most=1.0, ease=1.0)
+        for what in ("goal", "tau", "most", "weight"):
+            setattr(mixed, what, np.where(where, getattr(other, what), getattr(self, what)))
+        return mixed
+
+    def _goal(self, widest: Each) -> Array:
         return np.maximum(self.goal, widest) if self.held.hold.gives_way else self.goal
 
     @property
-    def lagging(self) -> float:
-        """How many times as wide as asked for the widest distance is."""
-        return 1.0 if self.held.hold.one_sided else float((self.tau / self.goal).max(initial=1.0))
+    def lagging(self) -> Array:
+        """(groups, vectors) how many times as wide as asked for the distances are."""
+        return np.ones_like(self.tau) if self.held.hold.one_sided else np.asarray(self.tau / self.goal)
 
     def numbers(self, vectors: Array) -> Array:
         """(groups, vectors) the numbers c that may reach 0."""
@@ -118,18 +130,17 @@ class Barrier:
         u = vectors / self.tau[..., None]
         return np.asarray(0.5 * (np.einsum("gqd,gqd->gq", u, u) - 1.0))
 
-    def violation(self, vectors: Array) -> float:
-        """The largest |v| / goal."""
-        hold = self.held.hold
-        return float(np.sqrt(hold.squares(vectors) / self.goal**2).max(initial=0.0))
+    def violation(self, vectors: Array) -> Array:
+        """(groups, vectors) |v| / goal."""
+        return np.sqrt(self.held.hold.squares(vectors) / self.goal**2)
 
-    def cost(self, vectors: Array, mu: float) -> Array:
+    def cost(self, vectors: Array, mu: Each) -> Array:
         """(groups,) penalties, and what the vectors cost anyhow."""
         own = self.held.hold.weight * self.held.hold.squares(vectors)
         total: Array = (penalty(self.numbers(vectors), mu, self.most) + 0.5 * own).sum(axis=1)
         return total
 
-    def add_to(self, normal: Normal, vectors: Array, jacobians: tuple[Array, ...], mu: float, damping: Array) -> _Work:
+    def add_to(self, normal: Normal, vectors: Array, jacobians: tuple[Array, ...], mu: Each, damping: Array) -> Work:
         """Add the batch to the normal equations of a step.
 
         Args:
@@ -173,9 +184,9 @@ class Barrier:
             scatter_add(normal.diagonal, blocks, np.swapaxes(row, 1, 2) @ row)
         if held.pair is not None:
             scatter_add(normal.coupling, held.pair, np.swapaxes(rows[0], 1, 2) @ rows[1])
-        return _Work(w, stiffness, shift, u, roots, along, tuple(rows))
+        return Work(w, stiffness, shift, u, roots, along, tuple(rows))
 
-    def bend(self, gradient: Array, work: _Work, off: Array) -> None:
+    def bend(self, gradient: Array, work: Work, off: Array) -> None:
         """Add the gradient (blocks, size) of vectors that turned out to be `off` (groups, vectors, d) at a trial.
 
         The second-order correction: the same matrix, with what the vectors are beyond their linear prediction.
@@ -195,7 +206,7 @@ class Barrier:
             total += (jacobian.reshape(groups, q * d, size) @ step[blocks][..., None]).reshape(groups, q, d)
         return total
 
-    def renew(self, work: _Work, moved: Array, taken: BoolArray) -> None:
+    def renew(self, work: Work, moved: Array, taken: BoolArray) -> None:
         """Multipliers after a step that moved the vectors by `moved`, in the groups (groups,) where it was taken."""
         if self.held.hold.one_sided:
             rate = moved[..., 0] / self.tau
@@ -206,7 +217,7 @@ class Barrier:
         wanted = np.clip(wanted, _LEAST_LEFT * w, self.most - _LEAST_LEFT * (self.most - w))
         self.weight = np.where(taken[:, None], wanted, self.weight)
 
-    def recentre(self, vectors: Array, mu: float, failed: BoolArray) -> None:
+    def recentre(self, vectors: Array, mu: Each, failed: BoolArray) -> None:
         """Bring multipliers back onto the central path in groups of which a block (blocks,) failed.
 
         There the step is one along the slope of what is to fall: damped enough, it does.
@@ -220,7 +231,7 @@ class Barrier:
         pressed = taken[:, None] & (self.weight > 0.5 * self.most) & (self.numbers(vectors) > -0.02)
         self.most = np.where(pressed, factor * self.most, self.most)
 
-    def _multipliers(self, c: Array, mu: float) -> tuple[Array, Array, Array]:
+    def _multipliers(self, c: Array, mu: Each) -> tuple[Array, Array, Array]:
         """Multipliers in the band about the central path, with slacks and excesses: what c is off goes to one."""
         central = central_weight(c, mu, self.most)
         left = self.most - central

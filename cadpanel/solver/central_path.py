@@ -15,9 +15,11 @@ import numpy as np
 from cadpanel.arrays import Array
 
 _NEARLY_NONE = 1e-300
+# What is left of the greatest weight at least: also a tenth of it is to be seen beside that weight.
+_NEARLY_ALL = 1e-14
 
 
-def central_weight(c: Array, mu: float, most: Array) -> Array:
+def central_weight(c: Array, mu: Array | float, most: Array) -> Array:
     """The w between 0 and `most` = nu at which c = mu / (nu - w) - mu / w."""
     m = mu / most
     # With w = nu y: c y^2 + (2 m - c) y - m = 0, solved such that nothing cancels.
@@ -26,11 +28,11 @@ def central_weight(c: Array, mu: float, most: Array) -> Array:
     share = np.where(
         slope > 0.0, 2.0 * m / np.maximum(slope + root, _NEARLY_NONE), 1.0 - 2.0 * m / (np.abs(c) + 2.0 * m + root)
     )
-    weight: Array = most * np.clip(share, _NEARLY_NONE, 1.0 - 1e-16)
+    weight: Array = most * np.clip(share, _NEARLY_NONE, 1.0 - _NEARLY_ALL)
     return weight
 
 
-def penalty(c: Array, mu: float, most: Array) -> Array:
+def penalty(c: Array, mu: Array | float, most: Array) -> Array:
     """The least of nu p - mu log p - mu log(p - c) over p, but for what does not depend on c."""
     weight = central_weight(c, mu, most)
     # p = mu / (nu - w) and p - c = mu / w; nu p = mu + w p and w p = w c + mu.

@@ -45,6 +45,16 @@ class HeldModel(Protocol):
         ...
 
     @property
+    def lengths(self) -> Array:
+        """(count,) how long what a block stands for is, the same for all of a connected component."""
+        ...
+
+    @property
+    def powers(self) -> Array:
+        """(count, size) the power of a length that each unknown counts in: 1 of lengths, 0 of angles."""
+        ...
+
+    @property
     def held(self) -> Sequence[HeldVectors]:
         """The batches of held vectors."""
         ...

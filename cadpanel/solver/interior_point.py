@@ -6,27 +6,29 @@ vectors turned out other than a step foretold, the step is bent once with the sa
 Nocedal and Wright, Numerical Optimization, 2nd ed. 2006, section 18.3): a tube of a millimetre about a curved way lets
 straight steps go but a few centimetres.
 
-Each connected component has its own damping, and what a step spoils in one place is not undone in another, see
-`solver.levenberg_marquardt`.
+Each connected component goes its own way: it has a barrier and distances, damping and an end of its own, and ends where
+it would end alone. What a step spoils in one place is not undone in another, see `solver.levenberg_marquardt`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
-from cadpanel.solver.barrier import Barrier
+from cadpanel.solver.barrier import Barrier, Work
 from cadpanel.solver.blocks import Normal
-from cadpanel.solver.bounds import bounded_step
+from cadpanel.solver.bounds import BoundedStep, bounded_step
+from cadpanel.solver.components import Components
+from cadpanel.solver.ended import Best, Ended, Limits
 from cadpanel.solver.held_model import HeldModel, Point
+from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 
 # Damping: a share of the free cost's own Gauss-Newton matrix, and how much of its diagonal's unit stands in for rows of
 # zeros. It never falls below the first: constraints that change sides from step to step would let it oscillate.
-_LEAST_DAMPING, _MOST_DAMPING, _IDLE = 0.03, 1e6, 1e-4
-_MOST_GROWTH, _LEAST_DROP = 64.0, 0.2
+_DAMPING = Nielsen(least=0.03, most=1e6, drop=0.2, rise=2.0)
+_IDLE = 1e-4
 # After so many refusals that damping grows by this factor, multipliers begin anew.
 _STUCK = 16.0
 # The barrier begins with this share of the cost, falls by this factor whenever the steps settle, and ends where all its
@@ -51,74 +53,8 @@ _ROUNDING, _TINY = 1e-9, 1e-30
 # The cost of a start that costs nothing itself is taken for this share of the squares of what is too long.
 _OPEN = 0.005
 
-Told = Callable[[int, float, float], bool]
-"""Told the step, the largest |v| / tau and the cost; whether to go on."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """When to stop.
-
-    Attributes:
-        steps: at most.
-        feasibility: by which share a vector may be too long.
-        least_cost: below which nothing is left to gain.
-        patience: for so many steps what may give way waits for what must hold; of thousands of panels one is always
-            over, and waiting for it takes longer than it saves.
-    """
-
-    steps: int = 100
-    feasibility: float = 1e-9
-    least_cost: float = 0.0
-    patience: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Ended:
-    """Where the steps ended.
-
-    Attributes:
-        now: the last point.
-        best: unknowns (count, size) of the best point: of those in which what must not give way holds the one that
-            exceeds the other distances least, and of those that exceed none the one with the least cost.
-        multipliers: for each batch (groups, vectors) the weight w of |v|^2 / 2 in the cost that holds the vector.
-        steps: linear systems solved.
-        settled: whether it came to rest with everything held.
-        told_to_stop: whether it was told to.
-        barriers, mu, damping: to go on from.
-    """
-
-    now: Best
-    best: Best
-    multipliers: tuple[Array, ...]
-    steps: int
-    settled: bool
-    told_to_stop: bool
-    barriers: tuple[Barrier, ...]
-    mu: float
-    damping: Array
-
-
-@dataclass(frozen=True, slots=True)
-class Best:
-    """A point, and what it is worth beside others.
-
-    Attributes:
-        unknowns: (count, size).
-        firm: by how much what must not give way exceeds its distances, at most; 1 where it holds.
-        excess: the same of what may give way.
-        cost: the cost of what is not held.
-    """
-
-    unknowns: Array
-    firm: float
-    excess: float
-    cost: float
-
-    def beaten_by(self, other: Best) -> bool:
-        """Whether the other is better, or as good and later."""
-        mine, its = ((max(one.firm, 1.0), max(one.excess, 1.0)) for one in (self, other))
-        return its <= mine
+Told = Callable[[int, float, Array], bool]
+"""Told the step, the largest |v| / tau and the costs (count,) of the blocks; whether to go on."""
 
 
 def interior_point(
@@ -126,8 +62,10 @@ def interior_point(
     start: Array,
     limits: Limits,
     *,
-    ease: float = 1.0,
+    ease: Array | float = 1.0,
+    only: BoolArray | None = None,
     after: Ended | None = None,
+    asked: Array | float = 1.0,
     tell: Told | None = None,
 ) -> Ended:
     """The smallest cost at which all held vectors stay within their distances.
@@ -136,84 +74,133 @@ def interior_point(
         model: cost and held vectors.
         start: (count, size) unknowns to begin with.
         limits: when to stop.
-        ease: distances that may give way count so many times as wide.
+        ease: distances that may give way count so many times as wide; one for each component (components,), or one.
+        only: (components,) those that move; all others stay where they start. All move if it is None.
         after: an end of the same model with slightly other distances, to begin with its multipliers.
+        asked: the share of their distances, one for each component or one, that what is told of excesses counts by.
         tell: told of every step.
     """
-    return _Run(model, start, limits, ease, after, tell).ended()
+    return _Run(model, start, limits, ease, only, after).ended(asked, tell)
 
 
 class _Run:
-    """The steps from one start."""
+    """The steps from one start.
+
+    Attributes:
+        goes_on: (components,) which ones still move.
+    """
 
     def __init__(
-        self, model: HeldModel, start: Array, limits: Limits, ease: float, after: Ended | None, tell: Told | None
+        self,
+        model: HeldModel,
+        start: Array,
+        limits: Limits,
+        ease: Array | float,
+        only: BoolArray | None,
+        after: Ended | None,
     ) -> None:
-        self.model, self.limits, self.tell, self.ease = model, limits, tell, ease
+        self.model, self.limits = model, limits
         self.pattern, self.bounds = model.pattern, model.bounds
-        self.point = model.at(self.bounds.clip(start))
-        self.vectors_held = sum(one.hold.radius.size for one in model.held)
-        self.growth = np.full(self.pattern.components, 2.0)
-        self.lag, self.anew, self.waited = _LAG, 0, 0
+        self.blocks = Components.of(self.pattern)
+        self.of = [self.blocks.seen_by(one.blocks[0]) for one in model.held]
+        count = self.blocks.count
+        self.ease = np.broadcast_to(ease, count).astype(np.float64)
+        self.goes_on = np.ones(count, dtype=bool) if only is None else only.copy()
+        self.moving = self.goes_on.copy()
+        self.settled = np.zeros(count, dtype=bool)
+        self.least = np.broadcast_to(limits.least_cost, count)
+        self.point = model.at(np.where(self.blocks.each(self.moving), self.bounds.clip(start), start))
+        self.vectors_held = np.zeros(count)
+        for one, of in zip(model.held, self.of, strict=True):
+            self.vectors_held += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
+        self.growth, self.lag = np.full(count, FIRST_GROWTH), np.full(count, _LAG)
+        self.anew, self.waited = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
+        self.scales = self.model.lengths[:, None] ** self.model.powers
         if after is None:
             self._begin()
         else:
             self._resume(after)
+        self.target = np.full(count, np.inf)
+        for barrier, of in self._giving():
+            self.target = np.minimum(self.target, of.smallest(barrier.goal))
+        self.target[np.isinf(self.target)] = 0.0
         self.now = self.best = self._worth(self.point)
 
-    def _begin(self) -> None:
-        giving = [(one, v) for one, v in zip(self.model.held, self.point.vectors, strict=True) if one.hold.gives_way]
-        count = sum(one.hold.radius.size for one, _ in giving) or self.vectors_held
-        # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares does.
-        beyond = (
-            np.maximum(np.sqrt(one.hold.squares(v)) - one.hold.radius, 0.0)
-            for one, v in zip(self.model.held, self.point.vectors, strict=True)
-        )
-        scale = max(self._cost(), _OPEN * sum(float(np.sum(far**2)) for far in beyond), self.limits.least_cost, _TINY)
-        self.mu = _BARRIER * scale / max(count, 1)
-        self.barriers = tuple(Barrier(one, most=_ELASTIC * self.mu, ease=self.ease) for one in self.model.held)
-        self.widest = max((float(np.linalg.norm(v, axis=-1).max(initial=0.0)) for _, v in giving), default=0.0)
-        for barrier, vectors in zip(self.barriers, self.point.vectors, strict=True):
-            barrier.open(vectors, self.widest, self.lag, self.mu)
-        self.damping = np.full(self.pattern.components, _LEAST_DAMPING)
+    def _giving(self) -> list[tuple[Barrier, Components]]:
+        """What may give way."""
+        return [(b, of) for b, of in zip(self.barriers, self.of, strict=True) if b.held.hold.gives_way]
 
-    def _begin_anew(self) -> None:
-        self.anew += 1
-        self.point = self.model.at(self.best.unknowns)
-        self.growth[:], self.lag = 2.0, _LAG
+    def _begin(self) -> None:
+        count = self.blocks.count
+        giving, beyond, self.widest = np.zeros(count), np.zeros(count), np.zeros(count)
+        for one, of, vectors in zip(self.model.held, self.of, self.point.vectors, strict=True):
+            # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares
+            # does.
+            allowed = one.hold.radius * (of.each(self.ease) if one.hold.gives_way else 1.0)
+            far = np.maximum(np.sqrt(one.hold.squares(vectors)) - allowed, 0.0)
+            beyond += of.total(np.sum(far**2, axis=1))
+            if one.hold.gives_way:
+                giving += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
+                self.widest = np.maximum(self.widest, of.largest(np.linalg.norm(vectors, axis=-1)))
+        scale = np.maximum.reduce([self._cost(), _OPEN * beyond, self.least, np.full(count, _TINY)])
+        self.mu = _BARRIER * scale / np.maximum(np.where(giving > 0.0, giving, self.vectors_held), 1.0)
+        self.barriers = tuple(
+            Barrier(one, most=of.each(_ELASTIC * self.mu), ease=of.each(self.ease))
+            for one, of in zip(self.model.held, self.of, strict=True)
+        )
+        for barrier, of, vectors in zip(self.barriers, self.of, self.point.vectors, strict=True):
+            barrier.open(vectors, of.each(self.widest), of.each(self.lag), of.each(self.mu))
+        self.damping = np.full(count, _DAMPING.least)
+
+    def _begin_anew(self, where: BoolArray) -> None:
+        """Begin again at the best point so far of some components."""
+        old = self.barriers, self.mu, self.widest, self.damping
+        self.anew += where
+        self.point = self.model.at(np.where(self.blocks.each(where), self.best.unknowns, self.point.unknowns))
+        self.growth, self.lag = np.where(where, FIRST_GROWTH, self.growth), np.where(where, _LAG, self.lag)
         self._begin()
+        parts = zip(old[0], self.barriers, self.of, strict=True)
+        self.barriers = tuple(one.mixed(new, of.each(where)) for one, new, of in parts)
+        self.mu, self.widest, self.damping = (
+            np.where(where, new, one) for new, one in zip((self.mu, self.widest, self.damping), old[1:], strict=True)
+        )
 
     def _resume(self, after: Ended) -> None:
-        self.mu, self.widest = 4.0 * after.mu, 0.0
+        self.mu, self.widest = 4.0 * after.mu, np.zeros(self.blocks.count)
         self.damping = np.minimum(after.damping, 1.0)
-        self.barriers = tuple(Barrier(one, most=1.0, ease=self.ease) for one in self.model.held)
+        self.barriers = tuple(
+            Barrier(one, most=1.0, ease=of.each(self.ease)) for one, of in zip(self.model.held, self.of, strict=True)
+        )
         for barrier, old in zip(self.barriers, after.barriers, strict=True):
             barrier.resume(old)
 
-    def ended(self) -> Ended:
-        steps, settled, stopped = 0, False, False
-        while steps < self.limits.steps and not settled and not stopped:
+    def ended(self, asked: Array | float, tell: Told | None) -> Ended:
+        """Step until every component has settled, or nothing is left of the steps, or somebody says so."""
+        steps, stopped = 0, False
+        while steps < self.limits.steps and self.goes_on.any() and not stopped:
             steps += 1
-            settled = self._step()
-            if not settled and self.anew < _ANEW and (self.damping >= _WEDGED).all():
-                self._begin_anew()
-            if self.tell is not None:
-                stopped = not self.tell(steps, max(self.now.firm, self.now.excess * self.ease), self.now.cost)
+            self._step()
+            wedged = self.goes_on & (self.damping >= _WEDGED) & (self.anew < _ANEW)
+            if wedged.any():
+                self._begin_anew(wedged)
+            if tell is not None:
+                beyond = np.maximum(self.now.firm, self.now.excess * self.ease / asked)[self.moving].max()
+                stopped = not tell(steps, float(beyond), self.point.cost)
         return Ended(
             now=self.now,
             best=self.best,
-            multipliers=tuple(barrier.weight / barrier.tau**2 for barrier in self.barriers),
+            ease=self.ease,
             steps=steps,
-            settled=settled,
+            settled=self.settled,
             told_to_stop=stopped,
             barriers=self.barriers,
             mu=self.mu,
             damping=self.damping,
         )
 
-    def _step(self) -> bool:
-        """One step; whether nothing is left to do."""
-        point, pattern = self.point, self.pattern
+    def _step(self) -> None:
+        """One step of every component that still moves."""
+        point, pattern, goes_on = self.point, self.pattern, self.goes_on
         damping = self.damping[pattern.component]
         normal = Normal(
             point.normal.gradient.copy(),
@@ -221,68 +208,89 @@ class _Run:
             point.normal.coupling.copy(),
         )
         i = np.arange(pattern.size)
-        normal.diagonal[:, i, i] += (_IDLE * damping)[:, None]
-        parts = list(zip(self.barriers, point.vectors, point.jacobians, strict=True))
-        work = [barrier.add_to(normal, vectors, rates, self.mu, damping) for barrier, vectors, rates in parts]
+        normal.diagonal[:, i, i] += _IDLE * (damping * self.model.lengths**2)[:, None] / self.scales**2
+        parts = list(zip(self.barriers, self.of, point.vectors, point.jacobians, strict=True))
+        work = [b.add_to(normal, vectors, rates, of.each(self.mu), damping) for b, of, vectors, rates in parts]
         bounded = bounded_step(pattern, normal, np.zeros_like(point.unknowns), point.unknowns, self.bounds)
         if bounded is None:
-            self.damping = np.minimum(10.0 * self.damping, _MOST_DAMPING)
-            return bool((self.damping >= _MOST_DAMPING).all())
-        moved = [barrier.moved(rates, bounded.step) for barrier, _, rates in parts]
-        with np.errstate(all="ignore"):
-            gradient = np.zeros_like(normal.gradient)
-            there = self.model.vectors(self.bounds.clip(point.unknowns + bounded.step))
-            for (barrier, vectors, _), part, move, ahead in zip(parts, work, moved, there, strict=True):
-                barrier.bend(gradient, part, ahead - vectors - move)
-            bent = bounded.factors.solve(-np.where(bounded.blocked, 0.0, gradient))
-        step = bounded.step
-        if np.abs(bent).max() <= _BENT * np.abs(step).max():  # also where it is no number
-            step = step + bent
-        taken, gain, failed = self._take(step, bounded.promised)
-        promised = abs(float(bounded.promised.sum()))
-        far = float(np.abs(step).max())
-        if failed.any():
-            self.lag = min(_MOST_LAG, self.lag**0.5)
-        else:
-            self.lag = float(np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG))
-        self._damp(gain, failed)
-        cost = self._cost()
-        settled = bool(
-            not failed.any()
-            and gain.min(initial=1.0) > _GAIN
-            and promised <= _READY * self.vectors_held * self.mu + _SHARE_LEFT * cost + self.limits.least_cost
+            self.damping = np.where(goes_on, np.minimum(10.0 * self.damping, _DAMPING.most), self.damping)
+            self.goes_on = goes_on & (self.damping < _DAMPING.most)
+            return
+        moved = [barrier.moved(rates, bounded.step) for barrier, _, _, rates in parts]
+        step = bounded.step + self._bent(bounded, work, moved)
+        step[~goes_on[pattern.component]] = 0.0
+        promise = np.where(goes_on[pattern.component], bounded.promised, 0.0)
+        taken, gain, failed = self._take(step, promise)
+        far = self.blocks.largest(np.abs(step) / self.scales)
+        calmer = np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG)
+        self.lag = np.where(failed, np.minimum(_MOST_LAG, self.lag**0.5), calmer)
+        damped, growth = _DAMPING.after(self.damping, self.growth, gain, failed)
+        self.damping, self.growth = (
+            np.where(goes_on, new, old) for new, old in ((damped, self.damping), (growth, self.growth))
         )
+        cost, promised = self._cost(), np.abs(self.blocks.total(promise))
+        ready = _READY * self.vectors_held * self.mu + _SHARE_LEFT * cost + self.least
+        settled = goes_on & ~failed & (gain > _GAIN) & (promised <= ready)
         stuck = failed & (self.growth >= _STUCK)
-        for barrier, part, move, vectors in zip(self.barriers, work, moved, self.point.vectors, strict=True):
-            whole = np.all([taken[blocks] for blocks in barrier.held.blocks], axis=0)
-            barrier.renew(part, move, whole)
-            if stuck.any():
-                barrier.recentre(vectors, self.mu, stuck[pattern.component])
-            if settled:
-                barrier.raise_most(vectors, whole, _ELASTIC_RISE)
+        self._renew(work, moved, taken, settled, stuck)
         self.now = self._worth(self.point)
-        if self.best.beaten_by(self.now):
-            self.best = self.now
-        return self._narrow(settled, failed, promised, cost, max(self.now.firm, self.now.excess))
+        self.best = self.best.mixed(self.now, self.best.beaten_by(self.now), self.blocks)
+        self._narrow(settled, failed, promised, cost)
 
-    def _narrow(self, settled: bool, failed: BoolArray, promised: float, cost: float, excess: float) -> bool:
-        """Narrow distances and barrier as far as the steps have settled; whether nothing is left to do."""
-        target = min((float(b.goal.min(initial=np.inf)) for b in self.barriers if b.held.hold.gives_way), default=0.0)
-        lagging = max((barrier.lagging for barrier in self.barriers), default=1.0)
-        if settled and self.widest <= target and lagging <= 1.0:
-            end = max(_BARRIER_END * cost, self.limits.least_cost, _TINY) / max(self.vectors_held, 1)
-            rest = max(_SHARE_LEFT * cost, self.limits.least_cost, _TINY)
-            if self.mu <= end and excess <= 1.0 + self.limits.feasibility and promised <= rest:
-                return True
-            self.mu = max(self.mu * _BARRIER_DROP, 0.5 * end)
+    def _bent(self, bounded: BoundedStep, work: Sequence[Work], moved: Sequence[Array]) -> Array:
+        """(count, size) what bends a step to where the vectors turn out to be; nothing where that is no small part."""
+        point = self.point
+        with np.errstate(all="ignore"):
+            gradient = np.zeros_like(point.unknowns)
+            there = self.model.vectors(self.bounds.clip(point.unknowns + bounded.step))
+            for barrier, vectors, part, move, ahead in zip(
+                self.barriers, point.vectors, work, moved, there, strict=True
+            ):
+                barrier.bend(gradient, part, ahead - vectors - move)
+            gradient[bounded.blocked] = 0.0
+            known = np.isfinite(self.blocks.total(gradient.sum(axis=1)))
+            bent = bounded.factors.solve(-np.where(self.blocks.each(known), gradient, 0.0))
+        small = self.blocks.largest(np.abs(bent)) <= _BENT * self.blocks.largest(np.abs(bounded.step))
+        return np.where(self.blocks.each(small), bent, 0.0)
+
+    def _renew(
+        self, work: Sequence[Work], moved: Sequence[Array], taken: BoolArray, settled: BoolArray, stuck: BoolArray
+    ) -> None:
+        """Multipliers after a step."""
+        parts = zip(self.barriers, self.of, work, moved, self.point.vectors, strict=True)
+        for barrier, of, part, move, vectors in parts:
+            whole = np.all([taken[blocks] for blocks in barrier.held.blocks], axis=0)
+            barrier.renew(part, move, whole & self.goes_on[of.label])
+            if stuck.any():
+                barrier.recentre(vectors, of.each(self.mu), stuck[self.pattern.component])
+            if settled.any():
+                barrier.raise_most(vectors, whole & settled[of.label], _ELASTIC_RISE)
+
+    def _narrow(self, settled: BoolArray, failed: BoolArray, promised: Array, cost: Array) -> None:
+        """Narrow distances and barrier as far as the steps have settled; and end where nothing is left to do."""
+        lagging = np.ones(self.blocks.count)
+        for barrier, of in zip(self.barriers, self.of, strict=True):
+            lagging = np.maximum(lagging, of.largest(barrier.lagging))
+        through = settled & (self.widest <= self.target) & (lagging <= 1.0)
+        end = np.maximum.reduce([_BARRIER_END * cost, self.least, np.full_like(cost, _TINY)])
+        end /= np.maximum(self.vectors_held, 1.0)
+        rest = np.maximum.reduce([_SHARE_LEFT * cost, self.least, np.full_like(cost, _TINY)])
+        held = np.maximum(self.now.firm, self.now.excess) <= 1.0 + self.limits.feasibility
+        done = through & (self.mu <= end) & held & (promised <= rest)
+        self.mu = np.where(through & ~done, np.maximum(self.mu * _BARRIER_DROP, 0.5 * end), self.mu)
+        self.settled, self.goes_on = self.settled | done, self.goes_on & ~done
         # What must hold comes first: narrowed while it does not, the others would drive it further off. It may never.
-        waits = not settled and 1.0 + _FIRMLY < self.now.firm < _FIRM_YET and self.waited < self.limits.patience
-        self.waited += waits and not failed.any()
-        if settled or not (failed.any() or waits):
-            self.widest = max(self.widest * self.lag, target)
-            for barrier, vectors in zip(self.barriers, self.point.vectors, strict=True):
-                barrier.follow(vectors, self.widest, self.lag)
-        return False
+        waits = (
+            ~settled
+            & (self.now.firm > 1.0 + _FIRMLY)
+            & (self.now.firm < _FIRM_YET)
+            & (self.waited < self.limits.patience)
+        )
+        self.waited += waits & ~failed & self.goes_on
+        follows = self.goes_on & ~failed & ~waits
+        self.widest = np.where(follows, np.maximum(self.widest * self.lag, self.target), self.widest)
+        for barrier, of, vectors in zip(self.barriers, self.of, self.point.vectors, strict=True):
+            barrier.follow(vectors, of.each(self.widest), of.each(self.lag), of.each(follows))
 
     def _take(self, step: Array, promised: Array) -> tuple[BoolArray, Array, BoolArray]:
         """Go where a step leads, wherever it does no harm.
@@ -291,20 +299,19 @@ class _Run:
             which blocks (count,) moved; the share of its promise (components,) that the step kept; and which
             components failed.
         """
-        pattern, point = self.pattern, self.point
+        pattern, point, total = self.pattern, self.point, self.blocks.total
         before = self._merit(point)
-        ahead, after = self._tried(self.bounds.clip(point.unknowns + step))
-        hoped, was = self._by_component(promised), self._by_component(before)
-        gain = (was - self._by_component(after)) / np.maximum(np.abs(hoped), 1e-300)
-        nothing = _ROUNDING * self._by_component(point.cost) + self.limits.least_cost
-        gain = np.where(np.abs(hoped) <= nothing, 1.0, gain)
-        failed = ~(gain > _HARMFUL)
+        ahead, after = self._tried(np.where(step == 0.0, point.unknowns, self.bounds.clip(point.unknowns + step)))
+        hoped, was = total(promised), total(before)
+        gain = (was - total(after)) / np.maximum(np.abs(hoped), 1e-300)
+        gain = np.where(np.abs(hoped) <= _ROUNDING * total(point.cost) + self.least, 1.0, gain)
+        failed = ~(gain > _HARMFUL) & self.goes_on
         taken = np.ones(pattern.count, dtype=bool)
         if failed.any():
             harm = ~(pattern.around(before) - pattern.around(after) > 0.0)
             taken = ~(failed[pattern.component] & harm)
             ahead, after = self._part(ahead.unknowns, taken)
-            stuck = failed & ~(self._by_component(after) < was)
+            stuck = failed & ~(total(after) < was)
             if (stuck[pattern.component] & taken).any():
                 taken &= ~stuck[pattern.component]
                 ahead, _ = self._part(ahead.unknowns, taken)
@@ -323,41 +330,25 @@ class _Run:
             merit = self._merit(ahead)
         return ahead, np.where(np.isfinite(merit), merit, np.inf)
 
-    def _damp(self, gain: Array, failed: BoolArray) -> None:
-        """Nielsen's rule: damping shrinks smoothly with the gain and grows ever faster on refusals."""
-        drop = np.maximum(_LEAST_DROP, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
-        risen = np.maximum(self.damping, 1e-4) * self.growth * 2.0
-        self.damping = np.clip(np.where(failed, risen, self.damping * drop), _LEAST_DAMPING, _MOST_DAMPING)
-        self.growth = np.where(failed, np.minimum(self.growth * 2.0, _MOST_GROWTH), 2.0)
-
     def _merit(self, point: Point) -> Array:
         """(count,) the cost with all penalties."""
         merit = point.cost.copy()
-        for barrier, vectors in zip(self.barriers, point.vectors, strict=True):
-            share = barrier.cost(vectors, self.mu) / len(barrier.held.blocks)
+        for barrier, of, vectors in zip(self.barriers, self.of, point.vectors, strict=True):
+            share = barrier.cost(vectors, of.each(self.mu)) / len(barrier.held.blocks)
             for blocks in barrier.held.blocks:
                 merit += np.bincount(blocks, share, minlength=len(merit))
         return merit
 
-    def _cost(self) -> float:
-        parts = zip(self.model.held, self.point.vectors, strict=True)
-        own = (one.hold.weight * one.hold.squares(vectors) for one, vectors in parts)
-        return float(self.point.cost.sum()) + 0.5 * sum(float(part.sum()) for part in own)
-
-    def _by_component(self, values: Array) -> Array:
-        component = self.pattern.component
-        return np.bincount(component, values, minlength=self.pattern.components).astype(np.float64, copy=False)
+    def _cost(self) -> Array:
+        """(components,) the cost without penalties."""
+        cost = self.blocks.total(self.point.cost)
+        for one, of, vectors in zip(self.model.held, self.of, self.point.vectors, strict=True):
+            cost += 0.5 * of.total((one.hold.weight * one.hold.squares(vectors)).sum(axis=1))
+        return cost
 
     def _worth(self, point: Point) -> Best:
-        firm, excess = (
-            max(
-                (
-                    barrier.violation(vectors)
-                    for barrier, vectors in zip(self.barriers, point.vectors, strict=True)
-                    if barrier.held.hold.gives_way is giving
-                ),
-                default=0.0,
-            )
-            for giving in (False, True)
-        )
-        return Best(point.unknowns, firm, excess, float(point.cost.sum()))
+        worst = {False: np.zeros(self.blocks.count), True: np.zeros(self.blocks.count)}
+        for barrier, of, vectors in zip(self.barriers, self.of, point.vectors, strict=True):
+            gives = barrier.held.hold.gives_way
+            worst[gives] = np.maximum(worst[gives], of.largest(barrier.violation(vectors)))
+        return Best(point.unknowns, worst[False], worst[True], self.blocks.total(point.cost))

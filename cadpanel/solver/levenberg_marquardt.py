@@ -19,11 +19,12 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.bounds import Bounds, bounded_step
+from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 from cadpanel.solver.stop import Stop
 
 # Marquardt's scale of an unknown that no residual sees is 0; this share of the block's largest keeps the step finite.
 _LEAST_SCALE = 1e-9
-_LEAST_DAMPING, _MOST_DAMPING, _MOST_GROWTH = 1e-15, 1e12, 64.0
+_DAMPING = Nielsen(least=1e-15, most=1e12, drop=1.0 / 3.0)
 # A decrease below this share of the cost is lost in rounding.
 _ROUNDING = 1e-11
 
@@ -108,7 +109,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
     bounds = model.bounds
     unknowns = start.copy() if bounds is None else bounds.clip(start)
     now = _Tried(unknowns, *model.linearize(unknowns))
-    mu, growth = np.zeros(count) + damping, np.full(count, 2.0)
+    mu, growth = np.zeros(count) + damping, np.full(count, FIRST_GROWTH)
     done = np.zeros(count, dtype=bool)
     iterations = 0
     while iterations < stopping.iterations and not done.all():
@@ -132,19 +133,12 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         if failed.any():
             ahead = _spared(model, now, ahead, failed, bounded.promised, last)
         better = (per_component(ahead.cost) < before) & ~done
-        mu, growth = _damp(mu, growth, gain, failed)
+        mu, growth = _DAMPING.after(mu, growth, gain, failed)
         # Refused again and again: rounding is all that is left of this component.
-        done |= (hoped <= stopping.cost * before) | (mu >= _MOST_DAMPING)
+        done |= (hoped <= stopping.cost * before) | (mu >= _DAMPING.most)
         if better.any():
             now = ahead
     return Solution(now.unknowns, per_component(now.cost), done, iterations, mu)
-
-
-def _damp(mu: Array, growth: Array, gain: Array, failed: BoolArray) -> tuple[Array, Array]:
-    """Nielsen: damping shrinks smoothly with the gain and grows ever faster on refusals."""
-    shrink = np.maximum(1.0 / 3.0, 1.0 - (2.0 * np.clip(gain, 0.0, 1.0) - 1.0) ** 3)
-    mu = np.clip(np.where(failed, mu * growth, mu * shrink), _LEAST_DAMPING, _MOST_DAMPING)
-    return mu, np.where(failed, np.minimum(growth * 2.0, _MOST_GROWTH), 2.0)
 
 
 @dataclass(frozen=True, slots=True)

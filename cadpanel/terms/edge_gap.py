@@ -97,7 +97,7 @@ class MixedGap(HeldTerm):
     def _from_line(self, state: State, side: int, points: Array, moved: Array | None) -> _Held:
         """From the line through two corners: r = x - c - s e with s = (x - c) . e / e . e and e between the corners."""
         other = self.seams.panels[:, 1 - side, None]
-        corners = self.seams.corners[:, 1 - side][:, [0, -1]]
+        corners = self.seams.corners[:, 1 - side]
         at = state.corners.position[other, corners]
         e = (at[:, 1] - at[:, 0])[:, None]
         square = dot(e, e)

@@ -28,7 +28,8 @@ from cadpanel.fitting.methods.local import fit_local
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.solver.interior_point import Limits, interior_point
+from cadpanel.solver.ended import Limits
+from cadpanel.solver.interior_point import interior_point
 from cadpanel.terms.term import HeldTerm
 from fixtures.arrays import reference
 from fixtures.grids import dome, grid
@@ -149,8 +150,7 @@ def _row(label: str, fit: Callable[..., cp.FitResult], of: cp.Reference, how: Fi
 
 
 def _rms(problem: Problem, unknowns: Array) -> float:
-    cost = float(problem.deviation.cost(problem.state(unknowns)).sum())
-    return problem.rms(cost) * problem.place.length
+    return problem.rms(problem.deviation.cost(problem.state(unknowns))) * problem.place.length
 
 
 class _DoneError(Exception):

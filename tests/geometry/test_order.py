@@ -34,6 +34,7 @@ def test_way_goes_backwards_by_the_first_axis_that_it_follows_most(way, backward
 
 def test_way_that_leads_nowhere_does_not_go_backwards():
     assert not any(goes_backwards(own, 1e-3) for own in drawn((0.0, 0.0, 0.0)))
+    assert not goes_backwards(np.zeros(3))
 
 
 @pytest.mark.parametrize(
@@ -84,6 +85,10 @@ def test_one_point_or_two_have_axes_too(count):
 def test_values_on_either_side_of_a_half_share_a_level():
     for values in drawn([0.5, 1.5, 0.5, 2.5]):
         assert levels(values, 1e-3).tolist() == [0, 1, 0, 2]
+
+
+def test_equal_values_share_a_level_where_nothing_is_tolerated():
+    assert levels(np.array([2.0, 1.0, 2.0, 1.0 + 1e-15]), 0.0).tolist() == [2, 0, 2, 1]
 
 
 def test_order_in_space_is_by_the_first_coordinate_that_differs():

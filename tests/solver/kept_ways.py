@@ -15,8 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
+from cadpanel.arrays import Array
+from cadpanel.solver.ended import Limits
 from cadpanel.solver.hold import Hold
-from cadpanel.solver.interior_point import Limits, interior_point
+from cadpanel.solver.interior_point import interior_point
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
 
 # Rounding grows along a way; so far it is nothing.
@@ -44,8 +46,8 @@ def ways() -> dict[str, list[list[float]]]:
     for name, model in models().items():
         told: list[list[float]] = []
 
-        def tell(_step: int, excess: float, cost: float, told: list[list[float]] = told) -> bool:
-            told.append([excess, cost])
+        def tell(_step: int, excess: float, cost: Array, told: list[list[float]] = told) -> bool:
+            told.append([excess, float(cost.sum())])
             return True
 
         interior_point(model, model.targets.copy(), Limits(steps=STEPS), tell=tell)

@@ -127,6 +127,7 @@ class HeldTargets:
         free = np.full(targets.shape, np.inf)
         self.bounds = Bounds(-free, free)
         self.pattern = pattern(targets.shape[0], targets.shape[1], list(pairs))
+        self.lengths, self.powers = np.ones(len(targets)), np.ones(targets.shape)
 
     def free_cost(self, unknowns: Array) -> float:
         """The cost of what is not held."""
@@ -159,6 +160,26 @@ def held_chain(targets: Array, radius: float, **how: Any) -> HeldTargets:
     first = np.arange(count - 1)
     batch = HeldBatch(hold, np.zeros((count - 1, 1, size)), (first, first + 1), first)
     return HeldTargets(targets, [batch], strip(count))
+
+
+def side_by_side(*models: HeldTargets) -> HeldTargets:
+    """Models whose batches are alike, beside each other with nothing between them."""
+    first = np.cumsum([0, *(len(model.targets) for model in models)])[:-1]
+    coupled = [model.pattern.pairs + begin for model, begin in zip(models, first, strict=True)]
+    pairs = [(int(a), int(b)) for a, b in np.concatenate(coupled)]
+    starts = np.cumsum([0, *(len(model.pattern.pairs) for model in models)])[:-1]
+    held = []
+    for batches in zip(*(model.held for model in models), strict=True):
+        one = batches[0]
+        hold = Hold(np.concatenate([batch.hold.radius for batch in batches]), weight=0.0, gives_way=one.hold.gives_way)
+        blocks = tuple(
+            np.concatenate([batch.blocks[side] + begin for batch, begin in zip(batches, first, strict=True)])
+            for side in range(len(one.blocks))
+        )
+        own = [batch.pair + begin for batch, begin in zip(batches, starts, strict=True) if batch.pair is not None]
+        offset = np.concatenate([batch.offset for batch in batches])
+        held.append(HeldBatch(hold, offset, blocks, np.concatenate(own) if own else None))
+    return HeldTargets(np.concatenate([model.targets for model in models]), held, pairs)
 
 
 class SpringChain:

@@ -14,6 +14,7 @@ from tests.solver.models import HeldBatch
 few = settings(max_examples=15)
 seeds = st.integers(0, 2**32 - 1)
 MU, MOST = 0.05, 7.0
+EVERYWHERE = np.ones((2, 1), dtype=bool)
 
 
 def case(seed: int, *, one_sided: bool = False, weight: float = 0.3) -> tuple[Barrier, HeldBatch, np.ndarray]:
@@ -89,15 +90,15 @@ def test_distances_narrow_and_never_widen_and_the_pull_stays():
     barrier.open(vectors, 0.0, 0.8, MU)
     wide, pull = barrier.tau.copy(), barrier.weight / barrier.tau
     assert np.all(wide >= 0.8 * np.linalg.norm(vectors, axis=-1) - 1e-12)
-    barrier.follow(0.5 * vectors, 0.0, 0.8)
+    barrier.follow(0.5 * vectors, 0.0, 0.8, EVERYWHERE)
     assert np.all(barrier.tau < wide)
     assert barrier.weight / barrier.tau == pytest.approx(pull)
     narrow = barrier.tau.copy()
-    barrier.follow(20.0 * vectors, 0.0, 0.8)
+    barrier.follow(20.0 * vectors, 0.0, 0.8, EVERYWHERE)
     assert np.array_equal(barrier.tau, narrow)
-    barrier.follow(0.0 * vectors, 0.0, 0.8)
+    barrier.follow(0.0 * vectors, 0.0, 0.8, EVERYWHERE)
     assert np.array_equal(barrier.tau, batch.hold.radius)
-    assert barrier.lagging == 1.0
+    assert np.all(barrier.lagging == 1.0)
 
 
 def test_only_what_is_pressed_may_pull_harder():

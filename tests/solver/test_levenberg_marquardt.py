@@ -11,6 +11,7 @@ from scipy.optimize import lsq_linear
 from cadpanel.solver import levenberg_marquardt as method
 from cadpanel.solver.bounds import Bounds, bounded_step
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
+from cadpanel.solver.nielsen import Nielsen
 from cadpanel.solver.stop import Stop
 from tests.solver.models import (
     LinearChain,
@@ -158,13 +159,13 @@ def test_a_trial_that_makes_no_sense_is_refused_beside_one_that_is_good(other):
 def test_only_steps_that_gain_nothing_count_as_failed(monkeypatch):
     """Of one that gains a little less damping is not taken back."""
     told = []
-    damp = method._damp
+    damp = Nielsen.after
 
-    def noted(mu, growth, gain, failed):
+    def noted(rule, mu, growth, gain, failed):
         told.append((gain, failed))
-        return damp(mu, growth, gain, failed)
+        return damp(rule, mu, growth, gain, failed)
 
-    monkeypatch.setattr(method, "_damp", noted)
+    monkeypatch.setattr(Nielsen, "after", noted)
     for start in np.random.default_rng(1).uniform(-3.0, 3.0, (30, 1, 2)):
         levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
     gains, failed = np.array(told)[:, :, 0].T
@@ -178,13 +179,13 @@ def test_only_steps_that_gain_nothing_count_as_failed(monkeypatch):
 def test_of_a_linear_problem_every_step_gains_what_it_promises(monkeypatch, reach, damping):
     """Cut at bounds, within bounds that nothing touches, and without any."""
     gains = []
-    damp = method._damp
+    damp = Nielsen.after
 
-    def noted(mu, growth, gain, failed):
+    def noted(rule, mu, growth, gain, failed):
         gains.append(float(gain[0]))
-        return damp(mu, growth, gain, failed)
+        return damp(rule, mu, growth, gain, failed)
 
-    monkeypatch.setattr(method, "_damp", noted)
+    monkeypatch.setattr(Nielsen, "after", noted)
     chain: Any = LinearChain(np.random.default_rng(8), blocks=4, size=3)
     wide = np.full((4, 3), reach or 0.0)
     chain.bounds = Bounds(-wide, wide) if reach else None
@@ -202,22 +203,6 @@ def test_bounds_that_nothing_touches_change_nothing():
     bound = levenberg_marquardt(model, starts, TIGHT)
     assert bound.iterations == free.iterations
     assert np.array_equal(bound.unknowns, free.unknowns)
-
-
-@pytest.mark.parametrize("gain", [0.01, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0, 1.2, 50.0])
-def test_damping_follows_the_gain_as_nielsen_has_it(gain):
-    """Hans Bruun Nielsen, Damping parameter in Marquardt's method, 1999, equation 2.5: never below a third."""
-    mu, growth = method._damp(np.array([0.1]), np.array([16.0]), np.array([gain]), np.array([False]))
-    assert mu == pytest.approx(0.1 * max(1.0 / 3.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), rel=1e-12)
-    assert growth == 2.0
-
-
-@pytest.mark.parametrize("gain", [0.0, -0.3, -1e9])
-def test_damping_grows_ever_faster_where_steps_fail(gain):
-    mu, growth = np.array([0.1]), np.array([2.0])
-    for wanted in (0.2, 0.8, 6.4):
-        mu, growth = method._damp(mu, growth, np.array([gain]), np.array([True]))
-        assert mu == pytest.approx(wanted)
 
 
 def test_what_never_gets_better_comes_to_an_end():

@@ -7,17 +7,29 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.holding import MARGIN, GapTerm, gap_terms, held_within, prices, seam_terms, tighten
+from cadpanel.fitting.methods.holding import (
+    MARGIN,
+    GapTerm,
+    gap_terms,
+    held_within,
+    prices,
+    seam_terms,
+    stopped_as,
+    tighten,
+)
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
+from cadpanel.fitting.methods.restoring import restored
 from cadpanel.fitting.methods.weighted import Weighted
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.solver.components import Components
+from cadpanel.solver.giving_way import HeldSolution
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.catalogue import LIMITS
@@ -39,22 +51,24 @@ _YIELDING = frozenset(limit.name for limit in LIMITS if limit.yields)
 
 @dataclass(frozen=True, slots=True)
 class Concurrent(Method):
-    """The smallest deviation at which every gap stays within its tolerance and every limit is kept."""
+    """The smallest deviation at which every gap stays within its tolerance and every limit is kept.
+
+    Attributes:
+        goes_on: whether the second start is the end of a fit under other tolerances, to go on from.
+    """
+
+    goes_on: bool = False
 
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
-        """Fit all panels from their local fits, and from as many restarts as are asked for.
-
-        With a second start, the end of a fit under other tolerances, it goes on from there instead.
-        """
-        local = starts[0]
-        if len(starts) > 1:
-            return _hold_seams(problem, starts[1], local, settings, progress, gathered=True)
+        """Fit all panels from their local fits and as many restarts as are asked for, or from another fit's end."""
+        if self.goes_on:
+            return _hold_seams(problem, starts[1], starts, settings, progress, gathered=True)
         return best_of_starts(
-            lambda start: _hold_seams(problem, start, local, settings, progress),
+            lambda start: _hold_seams(problem, start, starts, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
-            starts[-1],
+            starts[0],
             settings,
         )
 
@@ -66,7 +80,7 @@ class Concurrent(Method):
 def _hold_seams(
     problem: Problem,
     start: Array,
-    local: Array,
+    starts: Sequence[Array],
     settings: FitSettings,
     progress: Progress | None,
     *,
@@ -77,36 +91,61 @@ def _hold_seams(
     begin, iterations = (start, 0) if gathered else gather(problem, settings, [term for _, term in limits], start)
     named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in seams_held(problem, settings, begin)), *limits]
     model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
-    found = held_within(problem, model, begin, local=local, tell=progress)
-    iterations += found.iterations
+    everywhere = np.ones(model.pattern.components, dtype=bool)
+
+    def elsewhere(panels: BoolArray, now: Array) -> tuple[Array, int]:
+        but = [name for name, term in limits if term.hold.gives_way]
+        return restored(problem, settings, np.flatnonzero(panels), [now, begin, *starts], but)
+
+    def held(unknowns: Array, where: BoolArray) -> HeldSolution:
+        return held_within(problem, model, unknowns, local=starts[0], only=where, elsewhere=elsewhere, tell=progress)
+
+    found = held(begin, everywhere)
     yielding = [term for name, term in limits if name in _YIELDING]
-    if found.excess > _FIRM and found.end.best.firm > _FIRM and yielding and found.stopped is not Stop.TOLD:
+    lost = np.array([stop is not Stop.TOLD for stop in found.stopped]) & (found.end.best.firm > _FIRM) & bool(yielding)
+    found = _tightened(problem, model, found, ~lost, starts[0], settings, progress)
+    if lost.any() and Stop.TOLD not in found.stopped:
         # What panels must keep to cannot be kept beside these, as with rulings that are all parallel between edges that
         # are not: they give way with the gaps.
         for term in yielding:
             term.hold.gives_way = True
-        model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
-        found = held_within(problem, model, begin, local=local, tell=progress)
-        iterations += found.iterations
-    stopped = found.stopped
-    # Measure whole seams, tighten those that are too wide, go on.
+        blocks = Components.of(model.pattern)
+        found = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
+        found = _tightened(problem, model, found, lost, starts[0], settings, progress)
+    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
+    costs = prices(problem, named, found, settings.gaps | settings.allowed) if found.held else {}
+    return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), prices=costs)
+
+
+def _tightened(
+    problem: Problem,
+    model: HeldObjective,
+    found: HeldSolution,
+    where: BoolArray,
+    local: Array,
+    settings: FitSettings,
+    progress: Progress | None,
+) -> HeldSolution:
+    """Measure whole seams, tighten those that are too wide, go on; each of some connected components for itself."""
+    seams = Components.of(model.pattern).seen_by(np.array([seam.panels[0] for seam in problem.met], dtype=np.intp))
     for tightening in range(_TIGHTENINGS + 1):
-        if stopped not in (Stop.HELD, Stop.STEP_LIMIT):
+        held = where & np.array([stop in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
+        if not held.any():
             break
         excess = seam_excess(problem, found.unknowns, settings)
-        largest = max((float(over.max(initial=0.0)) for over in excess.values()), default=0.0)
-        if largest <= 1.0:
+        widest = np.max([seams.largest(over) for over in excess.values()], axis=0)
+        wide = held & ~(widest <= 1.0)
+        far = wide & ((tightening == _TIGHTENINGS) | ~(widest < _NEARLY))
+        found = found.saying(Stop.OPEN_BETWEEN, far)
+        wide &= ~far
+        if not wide.any():
             break
-        if tightening == _TIGHTENINGS or not largest < _NEARLY:
-            stopped = Stop.OPEN_BETWEEN
-            break
-        tighten([term for _, term in named], problem.state(found.unknowns), excess)
-        found = held_within(problem, model, found.unknowns, local=local, after=found.end, tell=progress)
-        iterations += found.iterations
-        stopped = found.stopped
-    # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
-    costs = prices(problem, named, found, settings.gaps | settings.allowed) if stopped is Stop.HELD else {}
-    return Fitted(found.unknowns, iterations, stopped, prices=costs)
+        here = wide[seams.label]
+        tighten(
+            model.held, problem.state(found.unknowns), {of: np.where(here, over, 0.0) for of, over in excess.items()}
+        )
+        found = held_within(problem, model, found.unknowns, local=local, only=wide, after=found, tell=progress)
+    return found
 
 
 def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list[GapTerm]:
@@ -144,5 +183,5 @@ def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     state = problem.state(unknowns)
     held: list[HeldTerm] = [*gap_terms(problem, settings.gaps, state), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
-    rms = problem.rms(float(problem.deviation.cost(state).sum()))
+    rms = problem.rms(problem.deviation.cost(state))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.methods.method import Progress
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
-from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
-from cadpanel.solver.interior_point import Ended, Limits
+from cadpanel.solver.components import Components
+from cadpanel.solver.ended import Limits
+from cadpanel.solver.giving_way import Elsewhere, HeldSolution, hold_or_give_way
+from cadpanel.solver.stop import Stop
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.edge_gap import MixedGap
@@ -35,7 +37,7 @@ _ARC_SHARE = 0.82
 # Where seams part still further they are held at a smaller one, such that they come to this share of it.
 _AIM = 0.99
 # A panel that deviates by no more than this share of its length, RMS, is exact.
-_EXACT = 1e-8
+EXACT = 1e-8
 
 
 def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
@@ -75,7 +77,7 @@ def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]
         state: where.
         excess: (seams,) what was measured along seams over what is allowed, of the gap, its parts and kinks.
     """
-    shares = {what: np.where(over > 1.0, _AIM / over, 1.0) for what, over in excess.items()}
+    shares = {what: np.where(over > 1.0, _AIM / np.maximum(over, 1.0), 1.0) for what, over in excess.items()}
     for term in terms:
         if isinstance(term, PartedGap | ArcGap):
             term.straighten(state)
@@ -102,15 +104,16 @@ def prices(
         allowed: of each name, in the units in which it is asked for.
     """
     state = problem.state(found.unknowns)
-    rms = problem.rms(float(problem.deviation.cost(state).sum()))
+    rms = problem.rms(problem.deviation.cost(state))
     pulls: dict[str, float] = dict.fromkeys(allowed, 0.0)
     for (name, term), weight in zip(named, found.end.multipliers, strict=True):
+        weight = problem.areas[term.blocks[0]][:, None] * weight
         if isinstance(term, PartedGap):  # each part by its share of |v|^2
             for part, lengths in zip(term.parts, np.moveaxis(term.vectors(state), 2, 0), strict=True):
                 pulls[part] += float(np.sum(weight * lengths**2))
         elif not term.hold.one_sided:
             pulls[name] += float(np.sum(weight * term.hold.radius**2))
-    if rms <= _EXACT:
+    if rms <= EXACT:
         return dict.fromkeys(pulls, 0.0)
     scale = problem.place.length / (problem.panels * rms)
     return {name: scale * pull / allowed[name] for name, pull in pulls.items()}
@@ -122,8 +125,10 @@ def held_within(
     start: Array,
     *,
     local: Array,
-    after: Ended | None = None,
+    only: BoolArray | None = None,
+    after: HeldSolution | None = None,
     tell: Progress | None = None,
+    elsewhere: Elsewhere | None = None,
     costly: bool = True,
 ) -> HeldSolution:
     """Hold every held term within its tolerance, at the smallest deviation.
@@ -133,16 +138,30 @@ def held_within(
         model: what is to be small, and what is held.
         start: (panels, size) unknowns to begin from.
         local: (panels, size) the local fits; no result may deviate beyond a multiple of theirs.
-        after: an end with slightly other tolerances to go on from.
+        only: (components,) which connected components are to be gone on with; all where it is None.
+        after: a solution with slightly other tolerances to go on from.
+        elsewhere: see `solver.giving_way`.
         costly: whether a deviation may be too large for any tolerance; not where only what panels must keep to is held.
         tell: told the step, the largest excess over a tolerance, and the RMS deviation in mm; whether to go on.
     """
-    best_alone = float(problem.deviation.cost(problem.state(local)).sum())
-    most = np.inf if not costly else max(_MOST_MULTIPLE**2 * best_alone, 0.5 * problem.panels * _MOST_SHARE**2)
-    exact = 0.5 * problem.panels * _EXACT**2
+    blocks = Components.of(model.pattern)
+    alone = blocks.total(problem.deviation.cost(problem.state(local)))
+    # Half the squares of all panels' lengths: shares of a length count against them.
+    lengths = 0.5 * blocks.total(model.lengths**2)
+    most = np.maximum(_MOST_MULTIPLE**2 * alone, lengths * _MOST_SHARE**2) if costly else np.inf
 
-    def told(step: int, excess: float, cost: float) -> bool:
+    def told(step: int, excess: float, cost: Array) -> bool:
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    return hold_or_give_way(model, begin, Limits(least_cost=exact), most_cost=most, after=after, tell=told)
+    limits = Limits(least_cost=lengths * EXACT**2)
+    return hold_or_give_way(
+        model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
+    )
+
+
+def stopped_as(found: HeldSolution) -> Stop:
+    """Why all of it stopped: as what exceeds its tolerance most, or else as whatever did not come to rest."""
+    if (found.excess > 1.0).any():
+        return found.stopped[int(found.excess.argmax())]
+    return next((stop for stop in found.stopped if stop is not Stop.HELD), Stop.HELD)

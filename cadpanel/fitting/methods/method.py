@@ -52,8 +52,8 @@ class Method(ABC):
         Args:
             problem: what is to be fitted.
             starts: arrays (panels, size) of unknowns to begin with, the likeliest first: for the local fits what the
-                reference tells of the panels, for all other methods the local fits, and behind them what to go on from
-                instead, where that is known.
+                reference tells of the panels, for all other methods the local fits and then what these began with, or
+                where another fit ended that is to be gone on from.
             settings: what the user asks.
             progress: told of every round, where a method goes in rounds.
         """

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from cadpanel.arrays import Array
 from cadpanel.fitting.methods.concurrent import gather, seam_excess, seams_held
 from cadpanel.fitting.methods.holding import MARGIN, tighten
@@ -14,7 +16,8 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
-from cadpanel.solver.interior_point import Ended, Limits, interior_point
+from cadpanel.solver.ended import Ended, Limits
+from cadpanel.solver.interior_point import interior_point
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.term import HeldTerm
 
@@ -44,13 +47,13 @@ class Trial(Method):
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
-        """Fit all panels from where they are known to be; restarts are of no use here."""
+        """Fit all panels from their local fits; restarts are of no use here."""
         limits = problem.limits(settings, MARGIN)
-        gathered, iterations = gather(problem, settings, limits, starts[-1])
+        gathered, iterations = gather(problem, settings, limits, starts[0])
         held: list[HeldTerm] = [*seams_held(problem, settings, gathered), *limits]
         model = HeldObjective(problem, [problem.deviation], held)
 
-        def told(step: int, excess: float, cost: float) -> bool:
+        def told(step: int, excess: float, cost: Array) -> bool:
             return progress is None or progress(step, excess, problem.rms(cost) * problem.place.length)
 
         unknowns, stopped = model.starting_from(gathered), Stop.STALLED
@@ -73,4 +76,4 @@ class Trial(Method):
 
 
 def _holds(end: Ended) -> bool:
-    return max(end.best.firm, end.best.excess) <= _HOLDS
+    return bool((np.maximum(end.best.firm, end.best.excess) <= _HOLDS).all())

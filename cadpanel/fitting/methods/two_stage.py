@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.methods.holding import MARGIN, held_within
+from cadpanel.fitting.methods.holding import MARGIN, held_within, stopped_as
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem
@@ -36,5 +36,5 @@ class TwoStage(Method):
         model = HeldObjective(problem, [problem.deviation, *gaps], problem.limits(settings, MARGIN), moving=moving)
         found = held_within(problem, model, local, local=local, costly=False, tell=progress)
         # Gaps are weighed, not held: that the limits hold says nothing of them.
-        stopped = Stop.AT_REST if found.stopped is Stop.HELD else found.stopped
+        stopped = Stop.AT_REST if found.held else stopped_as(found)
         return Fitted(found.unknowns, found.iterations, stopped)

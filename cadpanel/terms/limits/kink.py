@@ -32,7 +32,9 @@ class Kink(Limit):
         if allowed[self.name] >= self.most:
             return []
         chord = 2.0 * np.sin(0.5 * (1.0 - margin) * np.radians(allowed[self.name]))
-        return [KinkTerm(batch, panels.place, chord) for batch in panels.seams]
+        return [
+            KinkTerm(batch, panels.place, panels.lengths[batch.panels].min(axis=1), chord) for batch in panels.seams
+        ]
 
     def measure(self, measured: Measured) -> Array:
         """See `Limit.measure`; what a seam has counts for both of its panels."""
@@ -48,16 +50,19 @@ class Kink(Limit):
 
 
 class KinkTerm(HeldTerm):
-    """Holds the chord between the two skins' normals at the corners that meet."""
+    """Holds the chord between the two skins' normals at the corners that meet, in the length of their panels."""
 
-    def __init__(self, seams: SeamBatch, place: Placement, chord: float) -> None:
-        """Hold the seams of a batch; a chord of 2 sin(angle / 2)."""
+    def __init__(self, seams: SeamBatch, place: Placement, lengths: Array, chord: float) -> None:
+        """Hold the seams of a batch, with these lengths (seams,) in the solver's unit; a chord of 2 sin(angle / 2)."""
         self.seams, self.place = seams, place
         self.blocks, self.pair, self.panels = seams.blocks, seams.pair, len(place.origins)
-        self.hold = Hold(np.full(seams.corners[:, 0].shape, chord), weight=0.0, gives_way=True)
+        self._far = lengths[:, None, None, None]
+        self.hold = Hold(
+            np.repeat(chord * lengths[:, None], seams.corners.shape[2], axis=1), weight=0.0, gives_way=True
+        )
 
     def vectors(self, state: State) -> Array:
-        """(seams, corners, 3) from the second panel's normal to the first's."""
+        """(seams, corners, 3) from the second panel's normal to the first's, times lengths."""
         return (
             self._turned(state.normals.position[..., None], 0)[..., 0]
             - self._turned(state.normals.position[..., None], 1)[..., 0]
@@ -71,5 +76,5 @@ class KinkTerm(HeldTerm):
     def _turned(self, values: Array, which: int) -> Array:
         """(seams, corners, 3, columns) of values (panels, corners, 3, columns) in the panels' own frames."""
         panels, corners = self.seams.panels[:, which], self.seams.corners[:, which]
-        turned: Array = self.place.axes[panels][:, None] @ values[panels[:, None], corners]
+        turned: Array = self._far * (self.place.axes[panels][:, None] @ values[panels[:, None], corners])
         return turned

@@ -39,7 +39,7 @@ class SeamTurn(Limit):
         if allowed[self.name] >= self.most:
             return []
         sine = np.sin((1.0 - margin) * np.radians(allowed[self.name]))
-        return [TurnTerm(panels.outline.pieces, sine)]
+        return [TurnTerm(panels.outline.pieces, panels.lengths, sine)]
 
     def measure(self, measured: Measured) -> Array:
         """See `Limit.measure`."""
@@ -54,17 +54,24 @@ class SeamTurn(Limit):
 
 
 class TurnTerm(HeldTerm):
-    """Holds the sines of the turns of the pieces of panels' edges."""
+    """Holds the turns of the pieces of panels' edges: how far they would lead aside in the length of their panel."""
 
-    def __init__(self, pieces: Pieces, sine: float) -> None:
-        """Hold them below `sine`."""
-        self._pieces, self.panels = pieces, len(pieces.lengths)
-        self.blocks, self.pair = (np.arange(self.panels),), None
-        self.hold = Hold(np.full(pieces.lengths.shape, sine), weight=0.0, ties=TIES)
+    def __init__(self, pieces: Pieces, lengths: Array, sine: float) -> None:
+        """Hold them below `sine` in panels with these lengths (panels,), in the solver's unit.
+
+        Each piece is by itself: rows that stand in for pieces would count as something held.
+        """
+        own, piece = (found[:, None] for found in np.nonzero(pieces.planes.any(axis=2)))
+        self._pieces = Pieces(
+            points=pieces.points[own, piece], planes=pieces.planes[own, piece], lengths=pieces.lengths[own, piece]
+        )
+        self.blocks, self.pair, self.panels = (own[:, 0],), None, len(pieces.lengths)
+        self._far = lengths[own]
+        self.hold = Hold(sine * self._far, weight=0.0, ties=TIES)
 
     def vectors(self, state: State) -> Array:
-        """(panels, pieces, 1) sines."""
-        return self._turns(self._ends(state))[..., None]
+        """(pieces, 1, 1) sines times lengths."""
+        return (self._far * self._turns(self._ends(state)))[..., None]
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`: with the piece D and its length W the sine is m . D / W."""
@@ -77,13 +84,14 @@ class TurnTerm(HeldTerm):
         counted = np.maximum(np.maximum(size, least), np.finfo(float).tiny)
         by_piece = (self._pieces.planes - stretched[..., None] * across) / counted[..., None]
         rates = slopes(state.boundary)[self.blocks[0][:, None, None], self._places(state)]
-        return sines[..., None], (by_piece[:, :, None, :] @ (rates[:, :, 1] - rates[:, :, 0]),)
+        by_piece = self._far[..., None] * by_piece
+        return (self._far * sines)[..., None], (by_piece[:, :, None, :] @ (rates[:, :, 1] - rates[:, :, 0]),)
 
     def _places(self, state: State) -> IntArray:
         return places(self._pieces.points, state.corners.position.shape[1])
 
     def _ends(self, state: State) -> Array:
-        """(panels, pieces, 2, 3) in the panels' own frames."""
+        """(pieces, 1, 2, 3) in the panels' own frames."""
         ends: Array = state.boundary.position[self.blocks[0][:, None, None], self._places(state)]
         return ends
 

@@ -2,9 +2,11 @@
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 import cadpanel as cp
+from cadpanel.fitting.measures.verdict import limits_of
 from fixtures.arrays import reference
 from fixtures.lips import Lip
 
@@ -41,3 +43,40 @@ def test_what_holds_a_narrow_gap_holds_a_wide_one_at_no_more_deviation(twist):
     rms = [result.measures.overall_rms for result in results]
     for narrow, wide in pairwise(rms):
         assert wide <= 1.01 * narrow
+
+
+@pytest.mark.parametrize("seed", [2, 6])
+def test_what_holds_a_narrow_gap_holds_a_wide_one_also_where_gaps_give_way(seed):
+    """However narrow a gap is asked for that cannot be held, it stays as wide; whatever is wider is held."""
+    random = np.random.default_rng(seed)
+    twisted = reference(Lip(panels=2, panel_length=1200.0, twist=tuple(random.uniform(-8.0, 8.0, 2)), plan=(3.0, -1.0)))
+    least = widest_gap(cp.fit(twisted, tilt="fixed", gap_tolerance=0.01))
+    assert least > 0.011
+    for share in (0.7, 1.02):
+        found = cp.fit(twisted, tilt="fixed", gap_tolerance=share * least)
+        assert widest_gap(found) <= max(least, share * least) * (1.0 + 1e-6)
+        assert found.tolerance_met or share < 1.0
+
+
+@pytest.mark.parametrize("twist", [(7.0, -9.0)])
+def test_limits_hold_however_far_gaps_must_open_for_them(twist):
+    """Upright ends, a roof edge that may hardly move, and wide bends: less would be left of the limits than of gaps."""
+    hard = Lip(panels=3, panel_length=600.0, twist=twist, plan=(4.0, -3.0), radius=(200.0, 350.0))
+    found = cp.fit(
+        reference(hard),
+        tilt="fixed",
+        min_radius=150.0,
+        drift_across=0.005,
+        drift_along=0.01,
+        gap_tolerance=0.5,
+        seam_turn=90.0,
+        evenness=0.5,
+    )
+    assert not found.tolerance_met
+    for limit, allowed in limits_of(found.settings):
+        assert limit.kept(found.measures, allowed).all()
+    assert widest_gap(found) > 0.5
+
+
+def widest_gap(found: cp.FitResult) -> float:
+    return float(max(found.measures.max_corner_gap, found.measures.max_seam_gap))

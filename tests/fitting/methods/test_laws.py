@@ -258,8 +258,7 @@ def test_panels_that_do_not_touch_are_fitted_as_if_each_were_alone():
     assert result.tolerance_met
     for i in range(PANELS):
         alone = fit(replace(apart, panels=apart.panels[i : i + 1]), FitSettings())
-        # The solver's unit of length is the mean panel's: the stopping differs in its last digits.
-        assert np.abs(corners(alone)[0] - corners(result)[i]).max() <= 1.0
+        assert np.abs(corners(alone)[0] - corners(result)[i]).max() <= SAME
 
 
 def mitred_ring(count, bump):

@@ -79,11 +79,9 @@ def test_each_part_of_a_gap_is_limited_by_itself() -> None:
 
 
 def test_a_kink_is_limited_where_it_is_asked_for() -> None:
-    """By less than what all seams have, as the drawing bends by so much from panel to panel."""
-    kinks = np.degrees(usual(18).measures.kink)
-    most = 0.4 * float(np.median(kinks)) + 0.6 * float(kinks.max())
-    assert most < 0.99 * kinks.max()
-    flat = cp.fit(lip(18), max_kink=most)
+    """By a little less than the widest: the drawing bends by nearly so much from panel to panel."""
+    most = 0.97 * float(np.degrees(usual(9).measures.kink.max()))
+    flat = cp.fit(lip(9), max_kink=most)
     assert np.degrees(flat.measures.kink.max()) <= most
     assert flat.tolerance_met
 

@@ -12,6 +12,8 @@ import cadpanel as cp
 from cadpanel.fitting.settings import SHIFT, STEP, WIDTH
 from fixtures.arrays import reference
 from fixtures.lips import Lip
+from tests.instances import random_polygon
+from tests.known_panels import alone
 
 LENGTH = 18_000.0
 ANY_TURN = {"seam_turn": 90.0, "evenness": 0.5, "drift_along": 0.05}
@@ -76,6 +78,14 @@ def test_each_part_of_a_gap_is_limited_by_itself() -> None:
     assert tight.measures.seam_width.max() <= 6.0
     assert tight.measures.seam_shift.max() <= 2.0
     assert tight.measures.overall_rms > usual(9).measures.overall_rms
+
+
+def test_polygons_without_seams_have_nothing_that_may_not_turn() -> None:
+    shapes = [random_polygon(seed, corners) for seed, corners in ((7, 5), (8, 5))]
+    result = cp.fit(alone(*shapes), feature="planar-polygon")
+    assert result.tolerance_met
+    assert result.measures.turn.max() == 0.0
+    assert result.measures.overall_rms <= 1e-6
 
 
 def test_a_kink_is_limited_where_it_is_asked_for() -> None:

@@ -35,8 +35,8 @@ class SeamTurn(Limit):
     rows = (Row("max_seam_turn", "Largest turn of a seam, degrees", "{:.2f}"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
-        """See `Limit.held`."""
-        if allowed[self.name] >= self.most:
+        """See `Limit.held`; polygons without seams have nothing that may not turn."""
+        if allowed[self.name] >= self.most or not panels.outline.pieces.planes.any():
             return []
         sine = np.sin((1.0 - margin) * np.radians(allowed[self.name]))
         return [TurnTerm(panels.outline.pieces, panels.lengths, sine)]

@@ -82,6 +82,13 @@ def _sentence(said: str) -> str:
     return f"{words[0].upper()}{words[1:]}"
 
 
+def _begin_to_read(file: Path, how: ReferenceSettings, shown: Steps) -> None:
+    """Refuse files that are not there, and start what reads: it takes seconds, and no refusal should wait for it."""
+    shown.begin(_READ, file.name)
+    require_files(file, how)
+    start_reader()
+
+
 def _run(
     file: Path,
     how: ReferenceSettings,
@@ -92,10 +99,7 @@ def _run(
     time_limit: float | None,
 ) -> tuple[ReportModel, str | None]:
     """Read, fit, build, write and verify; the report, and what the tolerance or the stock lacks."""
-    shown.begin(_READ, file.name)
-    # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
-    require_files(file, how)
-    start_reader()
+    _begin_to_read(file, how, shown)
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
     from cadpanel.fitting.run import fit as fit_reference
@@ -138,8 +142,7 @@ def _find(
     """The same with the fewest panels along each strip that hold everything."""
     if settings.max_deviation is None:
         raise SettingsError(f"--divide {AUTO} is chosen by the largest deviation: give --max-deviation, too.")
-    shown.begin(_READ, file.name)
-    start_reader()
+    _begin_to_read(file, how, shown)
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
     from cadpanel.studies.fewest_panels import fewest_panels

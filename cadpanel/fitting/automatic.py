@@ -107,6 +107,7 @@ def offenders(result: FitResult) -> IntArray:
         beyond |= ~limit.kept(m, allowed)
     if result.stopped is Stop.OPEN_BETWEEN and beyond.any():
         return np.flatnonzero(beyond)  # their seams were held, and not tightened, as these panels deviate too far
+    gaps = m.gaps
     for what, most in how.gaps.items():
-        beyond[m.seam_panels[m.gaps[what] > most]] = True
+        beyond[m.seam_panels[gaps[what] > most]] = True
     return np.flatnonzero(beyond)

@@ -276,7 +276,8 @@ def _misses(result: FitResult) -> tuple[bool, float]:
         return False, float(len(result.shapes))
     measures, how = result.measures, result.settings
     shares = [float(limit.excess(measures, allowed).max()) for limit, allowed in limits_of(how)]
-    shares += [float(measures.gaps[what].max(initial=0.0)) / most for what, most in how.gaps.items()]
+    gaps = measures.gaps
+    shares += [float(gaps[what].max(initial=0.0)) / most for what, most in how.gaps.items()]
     shares.append(float(measures.max_deviation.max()) / (how.max_deviation or np.inf))
     return True, max(shares)
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -32,14 +35,15 @@ def counts_within(surface: Surface, size: tuple[float, float], by: By, source: s
         numbers = ", ".join(str(surface.faces[member // 2].number) for member in members)
         what = f"parameter {'uv'[members[0] % 2]} of face {numbers} of '{source}'"
         reaches = [(patch, axis, lengths_along(patch, axis, AVERAGED)) for patch, axis in patches]
-        count = fewest(
-            lambda number, of=reaches: max(_largest(patch, axis, reach, number, by) for patch, axis, reach in of),  # type: ignore[misc]
-            max(float(reach[:, -1].max()) for _, _, reach in reaches),
-            most,
-            what,
-        )
+        whole = max(float(reach[:, -1].max()) for _, _, reach in reaches)
+        count = fewest(partial(_largest_of, reaches, by), whole, most, what)
         counts[members] = max(count, *(least_count(patch, axis)[0] for patch, axis in patches))
     return [(int(u), int(v)) for u, v in counts.reshape(-1, 2)]
+
+
+def _largest_of(reaches: Sequence[tuple[Patch, int, Array]], by: By, count: int) -> float:
+    """The largest of so many parts of any of several parameters, mm."""
+    return max(_largest(patch, axis, reach, count, by) for patch, axis, reach in reaches)
 
 
 def _largest(patch: Patch, axis: int, reach: Array, count: int, by: By) -> float:

@@ -22,8 +22,9 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
         return False
     if settings.weights is not None:
         return True
+    gaps = measures.gaps
     return bool(
-        all((measures.gaps[what] <= allowed).all() for what, allowed in settings.gaps.items())
+        all((gaps[what] <= allowed).all() for what, allowed in settings.gaps.items())
         and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
 

@@ -16,7 +16,7 @@ from cadpanel.geometry.vectors import cross, unit
 from cadpanel.reference.across_seams import AcrossSeams
 from cadpanel.solver.hold import Hold
 from cadpanel.terms.limits.corner_drift import TIES
-from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row, of_both_panels
 from cadpanel.terms.state import State, slopes
 from cadpanel.terms.term import HeldTerm
 
@@ -45,11 +45,8 @@ class Evenness(Limit):
         return [EvennessTerm(panels, (1.0 - margin) * allowed[self.name] * lengths)]
 
     def measure(self, measured: Measured) -> Array:
-        """See `Limit.measure`; what a seam has counts for both of its panels."""
-        found = np.zeros(len(measured.lengths))
-        for side in (0, 1):
-            np.maximum.at(found, measured.seam_panels[:, side], measured.uneven)
-        return found / measured.lengths
+        """See `Limit.measure`."""
+        return of_both_panels(measured, measured.uneven) / measured.lengths
 
     def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
         """See `Limit.missed`."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.solver.hold import Hold
-from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row, of_both_panels
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import SeamBatch
 from cadpanel.terms.state import State, slopes
@@ -37,11 +37,8 @@ class Kink(Limit):
         ]
 
     def measure(self, measured: Measured) -> Array:
-        """See `Limit.measure`; what a seam has counts for both of its panels."""
-        found = np.zeros(len(measured.lengths))
-        for side in (0, 1):
-            np.maximum.at(found, measured.seam_panels[:, side], np.degrees(measured.kink))
-        return found
+        """See `Limit.measure`."""
+        return of_both_panels(measured, np.degrees(measured.kink))
 
     def missed(self, panel: str, value: float, allowed: float, length: float) -> str:
         """See `Limit.missed`."""

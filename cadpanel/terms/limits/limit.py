@@ -222,6 +222,14 @@ class Limit(ABC):
         return 100.0 * value if self.percent else value
 
 
+def of_both_panels(measured: Measured, seams: Array) -> Array:
+    """(panels,) the largest of what the seams of a panel have (seams,): it counts for both panels that meet there."""
+    found = np.zeros(len(measured.lengths))
+    for side in (0, 1):
+        np.maximum.at(found, measured.seam_panels[:, side], seams)
+    return found
+
+
 def limit_setting(limit: type[Limit]) -> float:
     """The field of `FitSettings` that asks for a limit."""
     what = Range(what=limit.what, least=limit.least, most=limit.most, unit="" if limit.percent else f" {limit.unit}")

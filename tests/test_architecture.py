@@ -200,7 +200,6 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",
     "cadpanel.brep.proof.shape_facts": "tests/brep/proof/test_certificate.py",
     "cadpanel.brep.server": "tests/brep/test_read.py",
-    "cadpanel.brep.step.products": "tests/brep/step/test_file.py",
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",

@@ -19,6 +19,7 @@ LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
 _NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _LONGEST_LAYER = 255
+_LONGEST_WORDS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +40,8 @@ class ShopSettings:
         density: of the sheet's material, kg/m3.
         stock: sheets that the store has, length and width, mm.
         facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
+        material: what the sheet is made of, as files and drawings name it; empty to name nothing.
+        author, organization: who files are from; empty to name nobody.
     """
 
     outputs: str | Sequence[str] | None = setting(
@@ -120,6 +123,11 @@ class ShopSettings:
         within=Range(what="facet height", least=1e-3, most=100.0, unit=" mm"),
         option=Option(metavar="MM", help="How far a bend pressed in facets may lie from the round one."),
     )
+    material: str = setting(
+        "", option=Option(metavar="NAME", help="What the sheet is made of, as files name it.", told=False)
+    )
+    author: str = setting("", option=Option(metavar="NAME", help="Who the STEP files say they are from.", told=False))
+    organization: str = setting("", option=Option(metavar="NAME", help="And from which house.", told=False))
 
     def __post_init__(self) -> None:
         """Check every setting, and bring those of several parts into one form.
@@ -138,6 +146,8 @@ class ShopSettings:
             object.__setattr__(self, "outputs", _names("outputs", self.outputs))
         object.__setattr__(self, "only", _names("panels", self.only) if self.only else ())
         object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
+        for what in ("material", "author", "organization"):
+            _check_words(what, getattr(self, what))
         object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
 
     def layer(self, role: str) -> str:
@@ -167,6 +177,11 @@ def layers_of(text: str) -> tuple[tuple[str, str], ...]:
     if not all(equals for _, equals, _ in pairs):
         raise SettingsError(f"names of layers are written like CUT=0,BEND=Folds, not {text!r}")
     return tuple((role.strip(), name.strip()) for role, _, name in pairs)
+
+
+def _check_words(what: str, given: object) -> None:
+    if not isinstance(given, str) or len(given) > _LONGEST_WORDS or not (given.isprintable() or not given):
+        raise SettingsError(f"the {what} is a line of at most {_LONGEST_WORDS} characters, not {given!r}")
 
 
 def _names(what: str, given: object) -> tuple[str, ...]:
@@ -218,3 +233,6 @@ class ShopKeywords(TypedDict, total=False):
     density: float
     stock: Sequence[tuple[float, float]]
     facet_height: float
+    material: str
+    author: str
+    organization: str

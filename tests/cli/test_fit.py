@@ -6,6 +6,7 @@ import json
 import resource
 import subprocess
 import sys
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.arrays import Array
+from cadpanel.brep.step.properties import PartData
 from cadpanel.delivery.outputs.step_files import Place, write_solids
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.settings import Schema
@@ -203,8 +205,10 @@ def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_s
 def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place) -> None:
-        write_solids(path, panels[:-1], title, schema, placed)
+    def lose_one(
+        path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place, *said: Sequence[PartData]
+    ) -> None:
+        write_solids(path, panels[:-1], title, schema, placed, said[0][:-1])
 
     monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")

@@ -25,7 +25,7 @@ HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPy
 
 # What users import from cadpanel itself. A name that leaves this list breaks someone's script.
 PUBLIC = {
-    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify"),
+    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify", "diff"),
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step", "unroll"),
     *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch", "FlatPattern"),
@@ -200,6 +200,7 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",
     "cadpanel.brep.proof.shape_facts": "tests/brep/proof/test_certificate.py",
     "cadpanel.brep.server": "tests/brep/test_read.py",
+    "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
@@ -207,6 +208,7 @@ THROUGH_A_DOOR = {
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.records.blanks": "tests/delivery/records/test_flat_parts.py",
+    "cadpanel.delivery.records.difference": "tests/delivery/test_diff.py",
     "cadpanel.delivery.records.study_rows": "tests/cli/test_study.py",
     "cadpanel.features.chain_shapes": "tests/features/test_panel_shapes.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",

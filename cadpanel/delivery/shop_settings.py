@@ -14,6 +14,7 @@ from cadpanel.setting import Option, Range, check_ranges, setting
 
 Origin = Literal["local", "keep"]
 DxfEntities = Literal["polyline", "lines"]
+MeshColours = Literal["feature", "deviation"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
@@ -40,6 +41,8 @@ class ShopSettings:
         density: of the sheet's material, kg/m3.
         stock: sheets that the store has, length and width, mm.
         facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
+        mesh_chord: how far the triangles of meshes may lie from the exact faces, mm.
+        mesh_colours: what colours of meshes tell: "feature" or "deviation".
         material: what the sheet is made of, as files and drawings name it; empty to name nothing.
         author, organization: who files are from; empty to name nobody.
     """
@@ -50,8 +53,8 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "outputs"),
             metavar="NAME,...",
-            help="What to write besides report.json: step, flats, schedule, setting-out, xlsx; all but the last if not "
-            "given.",
+            help="What to write besides report.json: step, flats, schedule, setting-out, glb, xlsx; all but the last "
+            "if not given.",
         ),
     )
     only: str | Sequence[str] = setting(
@@ -123,6 +126,12 @@ class ShopSettings:
         within=Range(what="facet height", least=1e-3, most=100.0, unit=" mm"),
         option=Option(metavar="MM", help="How far a bend pressed in facets may lie from the round one."),
     )
+    mesh_chord: float = setting(
+        0.5,
+        within=Range(what="chord tolerance of meshes", least=1e-3, most=10.0, unit=" mm"),
+        option=Option(metavar="MM", help="How far triangles of meshes may lie from the exact faces."),
+    )
+    mesh_colours: MeshColours = setting("feature", option=Option(help="What do colours of meshes tell?"))
     material: str = setting(
         "", option=Option(metavar="NAME", help="What the sheet is made of, as files name it.", told=False)
     )
@@ -138,6 +147,8 @@ class ShopSettings:
         check_ranges(self)
         if self.dxf_entities not in get_args(DxfEntities):
             raise SettingsError(f"contours are drawn as polyline or lines, not as {self.dxf_entities!r}")
+        if self.mesh_colours not in get_args(MeshColours):
+            raise SettingsError(f"colours of meshes tell feature or deviation, not {self.mesh_colours!r}")
         if self.origin not in get_args(Origin):
             raise SettingsError(f"the origin is local or kept ('keep'), not {self.origin!r}")
         if not isinstance(self.dxf_contour_only, bool):
@@ -233,6 +244,8 @@ class ShopKeywords(TypedDict, total=False):
     density: float
     stock: Sequence[tuple[float, float]]
     facet_height: float
+    mesh_chord: float
+    mesh_colours: MeshColours
     material: str
     author: str
     organization: str

@@ -35,6 +35,7 @@ PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
+        "panels.glb",
         "panels.step",
         "report.json",
         "schedule.csv",

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
+from cadpanel.delivery.outputs.panels_glb import PanelsGlb
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
 from cadpanel.delivery.outputs.setting_out import SettingOut
@@ -19,6 +20,7 @@ OUTPUTS: tuple[Output, ...] = (
     FlatDxf(),
     Schedule(),
     SettingOut(),
+    PanelsGlb(),
     ScheduleXlsx(),
 )
 

@@ -206,6 +206,7 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
     "cadpanel.cli.tables": "tests/cli/test_fit.py",
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
+    "cadpanel.delivery.meshes.panels": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.meshes.proof": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.records.blanks": "tests/delivery/records/test_flat_parts.py",

@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.panels_glb import PanelsGlb
+from cadpanel.delivery.outputs.panels_ifc import PanelsIfc
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
 from cadpanel.delivery.outputs.setting_out import SettingOut
@@ -22,6 +23,7 @@ OUTPUTS: tuple[Output, ...] = (
     SettingOut(),
     PanelsGlb(),
     ScheduleXlsx(),
+    PanelsIfc(),
 )
 
 

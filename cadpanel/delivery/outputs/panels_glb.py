@@ -19,29 +19,12 @@ class PanelsGlb(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        from cadpanel.brep.building.meshing import triangles_of
-        from cadpanel.delivery.meshes.colours import by_deviation, by_feature
-        from cadpanel.delivery.meshes.glb import MeshedPanel, glb_bytes
+        from cadpanel.delivery.meshes.glb import glb_bytes
+        from cadpanel.delivery.meshes.panels import meshed_panels
 
-        records, shop = delivery.records, delivery.shop
-        colours = by_deviation(records) if shop.mesh_colours == "deviation" else by_feature(records)
-        panels = [
-            MeshedPanel(
-                name=record.name,
-                mesh=triangles_of(built.solid, shop.mesh_chord),
-                colour=colour,
-                said={
-                    "feature": record.feature,
-                    "thickness": delivery.sheet.thickness,
-                    "max_deviation": record.max_deviation,
-                    "rms_deviation": record.rms_deviation,
-                },
-            )
-            for record, built, colour in zip(records, delivery.panels, colours, strict=True)
-        ]
         said = {"origin": list(delivery.origin), "length": "mm"}
         try:
-            (folder / GLB).write_bytes(glb_bytes(panels, delivery.title, said))
+            (folder / GLB).write_bytes(glb_bytes(meshed_panels(delivery, delivery.panels), delivery.title, said))
         except OSError as error:
             raise DeliveryError(f"'{folder / GLB}' cannot be written: {error.strerror or error}.") from error
 

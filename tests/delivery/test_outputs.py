@@ -151,7 +151,7 @@ def test_an_output_that_is_not_always_there_is_neither_written_nor_demanded(
 
 def test_an_output_whose_package_is_missing_is_refused_with_how_to_install_it() -> None:
     asked = NameList()
-    asked.always, asked.needs = False, "no_such_package"
+    asked.always, asked.needs = False, ("no_such_package",)
     with pytest.raises(
         SettingsError, match=r"'names' needs no_such_package: install it with pip install 'cadpanel\[nam"
     ):

@@ -17,7 +17,7 @@ class PanelsIfc(Output):
     name = "ifc"
     files = (IFC,)
     unasked = False
-    needs = "ifcopenshell"
+    needs = ("ifcopenshell",)
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""

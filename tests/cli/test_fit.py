@@ -116,6 +116,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
         " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
         " --stock 1500x3000,2500x4000 --facet-height 0.3"
+        " --mesh-chord 0.2 --mesh-colours deviation --material AlMg3 --author A.N. --organization O"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code in (0, 1), answer.err
@@ -161,6 +162,11 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "density": 7850.0,
         "stock": [[1500.0, 3000.0], [2500.0, 4000.0]],
         "facet_height": 0.3,
+        "mesh_chord": 0.2,
+        "mesh_colours": "deviation",
+        "material": "AlMg3",
+        "author": "A.N.",
+        "organization": "O",
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -399,7 +405,10 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out, xlsx."),
+        (
+            "--outputs flat",
+            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, xlsx, pdf, ifc.",
+        ),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),

@@ -56,7 +56,9 @@ def _wrong_numbers(facts: ShapeFacts, said: Validation) -> Iterator[str]:
 
 def _errors(facts: ShapeFacts) -> list[float]:
     pairs = ((facts.stated.area, float(facts.areas.sum())), (facts.stated.volume, facts.volume))
-    return [abs(stated / found - 1.0) if found else np.inf for stated, found in pairs if stated is not None]
+    # By the larger of the two: a file that holds no shape is wrong by all of it.
+    largest = [(stated, found, max(abs(stated), abs(found))) for stated, found in pairs if stated is not None]
+    return [abs(stated - found) / size for stated, found, size in largest if size > 0.0]
 
 
 def _same(found: Mapping[str, str | float], wanted: Mapping[str, str | float], name: str) -> bool:

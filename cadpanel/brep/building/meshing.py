@@ -19,9 +19,9 @@ WIDEST_ANGLE = 0.2
 """Radians between the normals of neighbouring facets, so that bends look round however small they are."""
 
 
-def triangles_of(shape: TopoDS_Shape, chord: float) -> Triangles:
+def triangles_of(shape: TopoDS_Shape, chord: float, widest_angle: float = WIDEST_ANGLE) -> Triangles:
     """A shape's faces as triangles that lie within `chord` mm of them, with the faces' own normals."""
-    BRepMesh_IncrementalMesh(shape, chord, False, WIDEST_ANGLE, False)
+    BRepMesh_IncrementalMesh(shape, chord, False, widest_angle, False)
     points: list[Array] = []
     normals: list[Array] = []
     corners: list[IntArray] = []

@@ -23,6 +23,8 @@ _RIGHT = 130.0
 _FRAME = Box(left=MARGIN, bottom=MARGIN, width=WIDTH - 2.0 * MARGIN, height=HEIGHT - 2.0 * MARGIN)
 _FLAT = Box(left=MARGIN, bottom=MARGIN, width=WIDTH - 2.0 * MARGIN - _RIGHT, height=HEIGHT - 2.0 * MARGIN)
 _FOLDED = Box(left=WIDTH - MARGIN - _RIGHT + 10.0, bottom=205.0, width=_RIGHT - 20.0, height=75.0)
+_CHORD, _ANGLE = 0.2, 0.4
+"""How far and by how many radians the facets of a folded view may lie off its faces, mm on paper."""
 _EDGES_BELOW = 16
 _TABLES = (WIDTH - MARGIN - _RIGHT + 2.0, 195.0)
 
@@ -56,7 +58,9 @@ def _panel_page(paper: Paper, contents: Contents, sheets: Sequence[PanelSheet], 
     neighbours = neighbours_of(contents.seams).get(record.name, {})
     _frame(paper)
     scale = draw_flat(paper, part, neighbours, _FLAT)
-    draw_folded(paper, triangles_of(built.solid, contents.shop.mesh_chord), panel_view(built.shape), _FOLDED)
+    # As fine as paper shows it, so that pages stay small and are read quickly.
+    chord = _CHORD * part.blank.width / _FOLDED.width
+    draw_folded(paper, triangles_of(built.solid, chord, _ANGLE), panel_view(built.shape), _FOLDED)
     left, top = _TABLES
     if part.bends:
         _, foot = draw_table(paper, BENDS, bend_rows(part.bends), left, top)

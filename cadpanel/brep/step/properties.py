@@ -119,7 +119,8 @@ class PropertyWriter:
         name = string(material.name)
         item = self._text.add(f"DESCRIPTIVE_REPRESENTATION_ITEM({name},{name})")
         self._property("'material property'", "'material name'", definition, "'material name'", [item])
-        measure = f"'density measure',POSITIVE_RATIO_MEASURE({real(material.density)}),#{self._density_unit()}"
+        # The practice has a POSITIVE_RATIO_MEASURE, which by the schema's rule on units may have no unit but 1.
+        measure = f"'density measure',NUMERIC_MEASURE({real(material.density)}),#{self._density_unit()}"
         item = self._text.add(f"MEASURE_REPRESENTATION_ITEM({measure})")
         self._property("'material property'", "'density'", definition, "'density'", [item])
 

@@ -55,6 +55,10 @@ def test_a_general_property_is_called_as_the_properties_that_it_stands_for():
         assert instances[general].split(",")[1] == instances[own].split("(")[1].split(",")[0]
 
 
+def test_a_density_has_no_measure_that_the_schema_refuses_with_its_unit():
+    assert "'density measure',NUMERIC_MEASURE(2660.0),#" in written([SAID])
+
+
 def test_products_have_numbers_names_and_descriptions():
     assert "PRODUCT('roof/A-01','P0','plane-cone-plane, 3 mm',(" in written([SAID])
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.folder import REPORT
@@ -96,13 +97,17 @@ def _names_before(earlier: Mapping[str, _Panel], later: Mapping[str, _Panel], to
     """By its name now the name that each panel had; those that are new are left out."""
     found = {name: name for name in later if name in earlier}
     gone = [panel for name, panel in earlier.items() if name not in later]
-    for name in later:
-        if name in found or not gone:
+    if not gone:
+        return found
+    middles, taken = cKDTree([panel.corners.mean(axis=0) for panel in gone]), set[int]()
+    for name, panel in later.items():
+        if name in found:
             continue
-        apart = [_apart(panel, later[name]) for panel in gone]
-        nearest = min(range(len(gone)), key=lambda place: apart[place])
-        if apart[nearest] <= tolerance:
-            found[name] = gone.pop(nearest).record.name
+        near = middles.query_ball_point(panel.corners.mean(axis=0), tolerance, return_sorted=True)
+        same = [place for place in near if place not in taken and _apart(gone[place], panel) <= tolerance]
+        if same:
+            taken.add(same[0])
+            found[name] = gone[same[0]].record.name
     return found
 
 

@@ -69,6 +69,8 @@ def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
     result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
     report = delivering.deliver(replace(result, reference=replace(result.reference, origin=far)), tmp_path / "far")
     assert (report.origin.kept, report.origin.offset) == (False, far)
+    said = "local origin at 800000000, -200000000, 1000 mm of the model"
+    assert said in (tmp_path / "far" / "panels.step").read_text("ascii")[:300]
     assert verifying.verify(tmp_path / "far").holds
     assert delivering.deliver(result, tmp_path / "near").origin.kept
     there, here = (
@@ -81,7 +83,7 @@ def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
 def test_step_files_lie_on_the_map_if_that_is_asked_for(tmp_path: Path) -> None:
     result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
     on_the_map = replace(result, reference=replace(result.reference, origin=far))
-    report = delivering.deliver(on_the_map, tmp_path / "out", shop=ShopSettings(origin="keep"))
+    report = delivering.deliver(on_the_map, tmp_path / "out", shop=ShopSettings(outputs=("glb", "ifc"), origin="keep"))
     assert (report.origin.kept, report.origin.offset) == (True, far)
     assert report.certificate.volume_error < 1e-11
     assert verifying.verify(tmp_path / "out").holds

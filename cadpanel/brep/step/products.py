@@ -39,11 +39,13 @@ class Header:
     Attributes:
         date: the time that the file states; the same panels at the same time give the same bytes.
         author, organization: empty where nobody is named.
+        note: what readers should know, one line; empty where there is nothing.
     """
 
     date: datetime = datetime(1970, 1, 1, tzinfo=UTC)
     author: str = ""
     organization: str = ""
+    note: str = ""
 
 
 def step_file(
@@ -89,8 +91,9 @@ def step_file(
 def _header(title: str, schema_name: str, header: Header) -> str:
     date = header.date.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S+00:00")
     who = f"({string(header.author)}),({string(header.organization)})"
+    described = ",".join(string(text) for text in ("Exact developable panels", header.note) if text)
     return (
-        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('Exact developable panels'),'2;1');\n"
+        f"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(({described}),'2;1');\n"
         f"FILE_NAME({string(title)},'{date}',{who},'cadpanel','cadpanel','');\n"
         f"FILE_SCHEMA(('{schema_name}'));\nENDSEC;\nDATA;\n"
     )

@@ -115,7 +115,7 @@ class _Writer:
         name.author, name.organization = (header.author,), (header.organization,)
         name.preprocessor_version = name.originating_system = "cadpanel"
         name.authorization = ""
-        self._file.header.file_description.description = ("ViewDefinition [ReferenceView_V1.2]",)
+        self._file.header.file_description.description = ("Panels of a curtain wall",)
         self._styles: dict[tuple[float, float, float], Any] = {}
         self._materials: dict[tuple[str, float], Any] = {}
 

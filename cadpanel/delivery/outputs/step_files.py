@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.settings import Schema
-from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.source_date import source_date
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ class PanelsStep(Output):
 
         data = [found for found in solid_data(delivery) if found is not None]
         schema, title = delivery.sheet.schema, delivery.title
-        write_solids(folder / PANELS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery.shop))
+        write_solids(folder / PANELS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery))
 
 
 class SkinsStep(Output):
@@ -61,7 +61,7 @@ class SkinsStep(Output):
 
         data = [found for found in skin_data(delivery) if found is not None]
         schema, title = delivery.sheet.schema, delivery.title
-        write_skins(folder / SKINS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery.shop))
+        write_skins(folder / SKINS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery))
 
 
 def write_solids(
@@ -142,15 +142,16 @@ def write_skins(
     )
 
 
-def header_of(shop: ShopSettings) -> Header:
-    """Who writes, and when.
+def header_of(contents: Contents) -> Header:
+    """Who writes, when, and in which coordinates.
 
     Raises:
         SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
     """
     from cadpanel.brep.step.products import Header
 
-    return Header(date=source_date(), author=shop.author, organization=shop.organization)
+    shop = contents.shop
+    return Header(date=source_date(), author=shop.author, organization=shop.organization, note=contents.where)
 
 
 def colour(place: int) -> Color:

@@ -93,6 +93,7 @@ def _of_all(contents: Contents, date: datetime) -> list[tuple[str, str]]:
         ("sheet", ", ".join(filter(None, (f"{contents.sheet.thickness:g} mm", shop.material)))),
         *((what, value) for what, value in named if value),
         ("units", "mm, degrees"),
+        *([("coordinates", contents.where)] if contents.where else []),
         ("date", date.strftime("%Y-%m-%d")),
     ]
 

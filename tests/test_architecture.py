@@ -204,7 +204,6 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
-    "cadpanel.cli.tables": "tests/cli/test_fit.py",
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.meshes.panels": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.meshes.proof": "tests/delivery/meshes/test_glb.py",

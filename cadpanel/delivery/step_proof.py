@@ -11,7 +11,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.contents import Contents
@@ -19,6 +19,7 @@ from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.part_data import skin_data, solid_data
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
+from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -60,6 +61,11 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             said=said,
             said_of_skin=said_of_skin,
             placed=contents.placed,
+            sheet=Sheet(
+                shape=recorded_shape(panel, depth),
+                thickness=contents.sheet.thickness,
+                skin_side=contents.sheet.skin_side,
+            ),
         )
         for panel, part, said, said_of_skin in zip(
             contents.records, contents.parts, solid_data(contents), skin_data(contents), strict=True

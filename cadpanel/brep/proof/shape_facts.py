@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.proof.boundary import Boundary
 from cadpanel.brep.step.properties import Stated
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
 
@@ -42,6 +43,7 @@ class ShapeFacts:
         centroid: (3,) of the volume, or of the area of a shape without solids, in the shape's own coordinates, mm.
         stated: what the file says of it besides.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
+        boundary: all that bounds it.
     """
 
     name: str
@@ -61,6 +63,7 @@ class ShapeFacts:
     piece_faces: IntArray
     other_edges: IntArray
     surfaces: Array
+    boundary: Boundary
     centroid: Array
     stated: Stated = SILENT
 

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.difference import DifferenceModel, PanelDifference, Status
 from cadpanel.delivery.records.flat_parts import FlatPart, flat_parts
 from cadpanel.delivery.records.report import PanelModel, ReportModel, read_report

@@ -9,7 +9,7 @@ import pytest
 
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.diff import diff
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report, write_report
 from cadpanel.delivery.schedule.difference_rows import HEADINGS, difference_rows
 from cadpanel.delivery.settings import SheetSettings

@@ -71,6 +71,7 @@ def test_what_is_not_the_reports_is_told(delivery: tuple[Path, ReportModel], tmp
                 verify(out)
     finally:
         (out / DRAWINGS).write_bytes(whole)
-    assert less == ("'drawings.pdf' has 3 pages instead of 4.",)
-    assert len(other) == 3
-    assert "'drawings.pdf': the page of panel 'N 1' does not say" in other[0]
+    # The manifest speaks first.
+    assert less[1:] == ("'drawings.pdf' has 3 pages instead of 4.",)
+    assert len(other) == 4
+    assert "'drawings.pdf': the page of panel 'N 1' does not say" in other[1]

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from cadpanel.atomic.result import ConeFit, CylinderFit, PlaneFit
     from cadpanel.brep.building.sheet import build_skin, build_solid
     from cadpanel.brep.survey import Survey
+    from cadpanel.delivery.diff import diff
     from cadpanel.delivery.verify import Verification, verify
     from cadpanel.features.feature import Feature
     from cadpanel.features.patches import Cone, Cylinder, Plane
@@ -82,6 +83,7 @@ __all__ = [
     "build_solid",
     "compare",
     "deliver",
+    "diff",
     "fewest_panels",
     "fit",
     "fit_cone",
@@ -103,6 +105,7 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
+        "delivery.diff": ("diff",),
         "delivery.verify": ("Verification", "verify"),
         "features.feature": ("Feature",),
         "features.patches": ("Cone", "Cylinder", "Plane"),

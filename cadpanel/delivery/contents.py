@@ -43,6 +43,13 @@ class Contents:
         """Where the local origin lies in STEP files, mm."""
         return self.origin if self.shop.origin == "keep" else (0.0, 0.0, 0.0)
 
+    @property
+    def where(self) -> str:
+        """Where the local origin lies in the model, for files in local coordinates; empty where it is the model's."""
+        if not any(self.origin) or self.shop.origin == "keep":
+            return ""
+        return "local origin at {:.0f}, {:.0f}, {:.0f} mm of the model".format(*self.origin)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and_centroid
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
+from cadpanel.brep.step.properties import Validation
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.errors import PanelError
 from cadpanel.geometry.edge_planes import SeamEdges
@@ -33,6 +35,7 @@ class PanelSheet:
         other: the sheet's other face.
         solid: the sheet.
         skin: the open shell that approximates the reference.
+        check, skin_check: by which a receiver sees that the solid and the skin arrived whole.
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
         moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
@@ -44,6 +47,8 @@ class PanelSheet:
     other: Panel
     solid: Solid
     skin: Shell
+    check: Validation
+    skin_check: Validation
     area: float
     volume: float
     moved: float
@@ -115,6 +120,7 @@ def _build_all(
 
 def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) -> PanelSheet:
     built = build_panel(shape, sheet.thickness, sheet.skin_side)
+    volume = sheet_volume(shape, sheet.thickness, sheet.skin_side)
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
@@ -126,8 +132,19 @@ def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) ->
         other=other_face(shape, sheet.thickness, sheet.skin_side),
         solid=built.solid,
         skin=built.skin,
+        check=_validation(built.solid, volume),
+        skin_check=_validation(built.skin, None),
         area=shape.area(),
-        volume=sheet_volume(shape, sheet.thickness, sheet.skin_side),
+        volume=volume,
         moved=straight.largest_move,
         notes=notes,
     )
+
+
+def _validation(shape: Solid | Shell, volume: float | None) -> Validation:
+    """Of a solid of that volume, mm3, or of an open shell."""
+    area, centroid = area_and_centroid(shape)
+    if volume is not None:
+        _, centroid = volume_and_centroid(shape)
+    x, y, z = centroid.tolist()
+    return Validation(area=area, volume=volume, centroid=(x, y, z))

@@ -14,11 +14,13 @@ from cadpanel.setting import Option, Range, check_ranges, setting
 
 Origin = Literal["local", "keep"]
 DxfEntities = Literal["polyline", "lines"]
+MeshColours = Literal["feature", "deviation"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
 _NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _LONGEST_LAYER = 255
+_LONGEST_WORDS = 200
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,6 +41,10 @@ class ShopSettings:
         density: of the sheet's material, kg/m3.
         stock: sheets that the store has, length and width, mm.
         facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
+        mesh_chord: how far the triangles of meshes may lie from the exact faces, mm.
+        mesh_colours: what colours of meshes tell: "feature" or "deviation".
+        material: what the sheet is made of, as files and drawings name it; empty to name nothing.
+        author, organization: who files are from; empty to name nobody.
     """
 
     outputs: str | Sequence[str] | None = setting(
@@ -47,8 +53,8 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "outputs"),
             metavar="NAME,...",
-            help="What to write besides report.json: step, flats, schedule, setting-out, xlsx; all but the last if not "
-            "given.",
+            help="What to write besides report.json: step, flats, schedule, setting-out, glb, xlsx, pdf, ifc; all but "
+            "the last three if not given.",
         ),
     )
     only: str | Sequence[str] = setting(
@@ -120,6 +126,17 @@ class ShopSettings:
         within=Range(what="facet height", least=1e-3, most=100.0, unit=" mm"),
         option=Option(metavar="MM", help="How far a bend pressed in facets may lie from the round one."),
     )
+    mesh_chord: float = setting(
+        0.5,
+        within=Range(what="chord tolerance of meshes", least=1e-3, most=10.0, unit=" mm"),
+        option=Option(metavar="MM", help="How far triangles of meshes may lie from the exact faces."),
+    )
+    mesh_colours: MeshColours = setting("feature", option=Option(help="What do colours of meshes tell?"))
+    material: str = setting(
+        "", option=Option(metavar="NAME", help="What the sheet is made of, as files name it.", told=False)
+    )
+    author: str = setting("", option=Option(metavar="NAME", help="Who the STEP files say they are from.", told=False))
+    organization: str = setting("", option=Option(metavar="NAME", help="And from which house.", told=False))
 
     def __post_init__(self) -> None:
         """Check every setting, and bring those of several parts into one form.
@@ -130,6 +147,8 @@ class ShopSettings:
         check_ranges(self)
         if self.dxf_entities not in get_args(DxfEntities):
             raise SettingsError(f"contours are drawn as polyline or lines, not as {self.dxf_entities!r}")
+        if self.mesh_colours not in get_args(MeshColours):
+            raise SettingsError(f"colours of meshes tell feature or deviation, not {self.mesh_colours!r}")
         if self.origin not in get_args(Origin):
             raise SettingsError(f"the origin is local or kept ('keep'), not {self.origin!r}")
         if not isinstance(self.dxf_contour_only, bool):
@@ -138,6 +157,8 @@ class ShopSettings:
             object.__setattr__(self, "outputs", _names("outputs", self.outputs))
         object.__setattr__(self, "only", _names("panels", self.only) if self.only else ())
         object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
+        for what in ("material", "author", "organization"):
+            _check_words(what, getattr(self, what))
         object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
 
     def layer(self, role: str) -> str:
@@ -167,6 +188,11 @@ def layers_of(text: str) -> tuple[tuple[str, str], ...]:
     if not all(equals for _, equals, _ in pairs):
         raise SettingsError(f"names of layers are written like CUT=0,BEND=Folds, not {text!r}")
     return tuple((role.strip(), name.strip()) for role, _, name in pairs)
+
+
+def _check_words(what: str, given: object) -> None:
+    if not isinstance(given, str) or len(given) > _LONGEST_WORDS or not (given.isprintable() or not given):
+        raise SettingsError(f"the {what} is a line of at most {_LONGEST_WORDS} characters, not {given!r}")
 
 
 def _names(what: str, given: object) -> tuple[str, ...]:
@@ -218,3 +244,8 @@ class ShopKeywords(TypedDict, total=False):
     density: float
     stock: Sequence[tuple[float, float]]
     facet_height: float
+    mesh_chord: float
+    mesh_colours: MeshColours
+    material: str
+    author: str
+    organization: str

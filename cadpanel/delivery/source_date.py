@@ -1,4 +1,4 @@
-"""The date of written files: that of SOURCE_DATE_EPOCH, so that the same delivery gives the same bytes."""
+"""The date of files: the present, or that of SOURCE_DATE_EPOCH, with which the same panels give the same bytes."""
 
 from __future__ import annotations
 
@@ -11,12 +11,14 @@ VARIABLE = "SOURCE_DATE_EPOCH"
 
 
 def source_date() -> datetime:
-    """The date that the environment asks for, in seconds since 1970; the beginning of 1970 where it asks for none.
+    """The date that the environment asks for, in seconds since 1970; where it asks for none the present, to the second.
 
     Raises:
         SettingsError: what it says is no number of seconds.
     """
-    said = os.environ.get(VARIABLE, "0")
+    said = os.environ.get(VARIABLE)
+    if said is None:
+        return datetime.now(UTC).replace(microsecond=0)
     try:
         return datetime.fromtimestamp(int(said), UTC)
     except (ValueError, OverflowError, OSError) as error:

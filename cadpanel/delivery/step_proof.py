@@ -16,6 +16,7 @@ from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
+from cadpanel.delivery.part_data import skin_data, solid_data
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
 from cadpanel.delivery.records.to_shape import recorded_shape
@@ -57,6 +58,8 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             far_planes=_far_planes(panel, depth),
             fitted=_fitted(panel),
             flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
+            said=said,
+            said_of_skin=said_of_skin,
             placed=contents.placed,
             sheet=Sheet(
                 shape=recorded_shape(panel, depth),
@@ -64,7 +67,9 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
                 skin_side=contents.sheet.skin_side,
             ),
         )
-        for panel, part in zip(contents.records, contents.parts, strict=True)
+        for panel, part, said, said_of_skin in zip(
+            contents.records, contents.parts, solid_data(contents), skin_data(contents), strict=True
+        )
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
     wanted = [_expected_seam(contents.seams[place], moved) for place in there]
@@ -123,6 +128,7 @@ def _record(certificate: Certificate) -> CertificateModel:
         volume_error=certificate.volume_error,
         flat_area_error=certificate.flat_area_error,
         flat_length_error=certificate.flat_length_error,
+        stated_error=certificate.stated_error,
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         clear=_clear([one for one in certificate.clear if one is not None]),

@@ -224,6 +224,9 @@ def record(built: PanelSheet) -> PanelModel:
         "patches": patch_models(built.shape),
         "area": built.area,
         "volume": built.volume,
+        "surface": built.check.area,
+        "centroid": built.check.centroid,
+        "skin_centroid": built.skin_check.centroid,
     }
     return PanelModel.model_validate({**told, **dict.fromkeys(UNMEASURED, 0.0)})
 

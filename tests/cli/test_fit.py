@@ -6,6 +6,7 @@ import json
 import resource
 import subprocess
 import sys
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -19,6 +20,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.arrays import Array
+from cadpanel.brep.step.properties import PartData
 from cadpanel.delivery.outputs.step_files import Place, write_solids
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.settings import Schema
@@ -34,6 +36,7 @@ def test_a_delivery_holds_its_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
         "manifest.json",
+        "panels.glb",
         "panels.step",
         "report.json",
         "schedule.csv",
@@ -114,6 +117,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
         " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
         " --stock 1500x3000,2500x4000 --facet-height 0.3"
+        " --mesh-chord 0.2 --mesh-colours deviation --material AlMg3 --author A.N. --organization O"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code in (0, 1), answer.err
@@ -159,6 +163,11 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "density": 7850.0,
         "stock": [[1500.0, 3000.0], [2500.0, 4000.0]],
         "facet_height": 0.3,
+        "mesh_chord": 0.2,
+        "mesh_colours": "deviation",
+        "material": "AlMg3",
+        "author": "A.N.",
+        "organization": "O",
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -204,8 +213,10 @@ def test_a_missed_tolerance_is_delivered_marked_and_exits_with_1(run: Run, lip_s
 def test_a_proof_that_does_not_hold_exits_with_1_and_delivers_nothing(
     run: Run, lip_step: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def lose_one(path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place) -> None:
-        write_solids(path, panels[:-1], title, schema, placed)
+    def lose_one(
+        path: Path, panels: tuple[PanelSheet, ...], title: str, schema: Schema, placed: Place, *said: Sequence[PartData]
+    ) -> None:
+        write_solids(path, panels[:-1], title, schema, placed, said[0][:-1])
 
     monkeypatch.setattr("cadpanel.delivery.outputs.step_files.write_solids", lose_one)
     answer = run("fit", lip_step, "--out", tmp_path / "out")
@@ -395,7 +406,10 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out, xlsx."),
+        (
+            "--outputs flat",
+            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, xlsx, pdf, ifc.",
+        ),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),

@@ -125,7 +125,8 @@ def test_a_thickness_that_is_none_is_refused(thickness: float) -> None:
 
 
 # ------------------------------------------------------------------------------------------------------------ delivery
-def test_the_same_fit_gives_the_same_bytes(tmp_path: Path) -> None:
+def test_the_same_fit_gives_the_same_bytes_at_the_same_date(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
     for name in ("one", "two"):
         deliver(fitted(), tmp_path / name)
     for file in (PANELS, SKINS):

@@ -70,6 +70,8 @@ def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
     result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
     report = delivering.deliver(replace(result, reference=replace(result.reference, origin=far)), tmp_path / "far")
     assert (report.origin.kept, report.origin.offset) == (False, far)
+    said = "local origin at 800000000, -200000000, 1000 mm of the model"
+    assert said in (tmp_path / "far" / "panels.step").read_text("ascii")[:300]
     assert verifying.verify(tmp_path / "far").holds
     assert delivering.deliver(result, tmp_path / "near").origin.kept
     there, here = (
@@ -82,7 +84,7 @@ def test_a_model_on_a_map_is_set_out_on_the_map(tmp_path: Path) -> None:
 def test_step_files_lie_on_the_map_if_that_is_asked_for(tmp_path: Path) -> None:
     result, far = fitted(), (8.0e8, -2.0e8, 1000.0)
     on_the_map = replace(result, reference=replace(result.reference, origin=far))
-    report = delivering.deliver(on_the_map, tmp_path / "out", shop=ShopSettings(origin="keep"))
+    report = delivering.deliver(on_the_map, tmp_path / "out", shop=ShopSettings(outputs=("glb", "ifc"), origin="keep"))
     assert (report.origin.kept, report.origin.offset) == (True, far)
     assert report.certificate.volume_error < 1e-11
     assert verifying.verify(tmp_path / "out").holds
@@ -152,7 +154,7 @@ def test_an_output_that_is_not_always_there_is_neither_written_nor_demanded(
 
 def test_an_output_whose_package_is_missing_is_refused_with_how_to_install_it() -> None:
     asked = NameList()
-    asked.always, asked.needs = False, "no_such_package"
+    asked.always, asked.needs = False, ("no_such_package",)
     with pytest.raises(
         SettingsError, match=r"'names' needs no_such_package: install it with pip install 'cadpanel\[nam"
     ):

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from functools import singledispatch
 
 from OCP.BRep import BRep_Builder
-from OCP.BRepGProp import BRepGProp
-from OCP.GProp import GProp_GProps
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 
 from cadpanel.brep.building.chain_sheet import chain_sheet
 from cadpanel.brep.building.chain_skin import chain_skin
 from cadpanel.brep.building.edges import shell_of
+from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.building.polygon_sheet import polygon_sheet, polygon_skin
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -115,6 +114,4 @@ def _solid_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:
 
 def volume_of(shape: TopoDS_Shape) -> float:
     """The kernel's own volume of a solid, mm3: positive where its faces point outwards."""
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
-    return float(properties.Mass())
+    return volume_and_centroid(shape)[0]

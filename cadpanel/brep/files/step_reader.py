@@ -74,7 +74,7 @@ class StepDocument:
         return None
 
 
-def read_document(path: Path, *, labels: bool, heal: bool = True) -> StepDocument:
+def read_document(path: Path, *, labels: bool, heal: bool = True, properties: bool = False) -> StepDocument:
     """Read a STEP file.
 
     Args:
@@ -83,6 +83,7 @@ def read_document(path: Path, *, labels: bool, heal: bool = True) -> StepDocumen
             beside shapes, which makes the reader as fast as one that knows no names at all.
         heal: whether the kernel may repair what it reads, as it does by default. Without, shapes are what the file
             says, and reading takes less than half the time.
+        properties: whether what is said of products besides matters: numbers to check an import by, attributes.
 
     Raises:
         StepFault: the file is not whole, or its data are damaged.
@@ -93,8 +94,6 @@ def read_document(path: Path, *, labels: bool, heal: bool = True) -> StepDocumen
     for switch in (
         reader.SetColorMode,
         reader.SetLayerMode,
-        reader.SetPropsMode,
-        reader.SetMetaMode,
         reader.SetGDTMode,
         reader.SetMatMode,
         reader.SetViewMode,
@@ -102,6 +101,8 @@ def read_document(path: Path, *, labels: bool, heal: bool = True) -> StepDocumen
     ):
         if not labels:
             switch(False)
+    reader.SetPropsMode(properties)
+    reader.SetMetaMode(properties)
     Interface_Static.SetIVal_s(NAMES_OF_FACES, int(labels))
     try:
         if reader.ReadFile(str(path)) != IFSelect_RetDone:

@@ -23,6 +23,7 @@ from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, 
 from cadpanel.brep.proof.rebuilt import unlike_rebuilt
 from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
+from cadpanel.brep.proof.stated_checks import check_stated
 from cadpanel.geometry.kink import edge_angles
 
 TANGENCY_LIMIT = 1e-9
@@ -50,6 +51,7 @@ class Certificate:
         volume_error: greatest relative difference of a solid's volume from the expected one.
         flat_area_error: greatest relative difference of a flat pattern's area from that of the surface in the solid.
         flat_length_error: greatest difference of an edge's length, unrolled, from that on the skin, mm.
+        stated_error: greatest relative difference of a volume or area that a file states from the kernel's.
         names_kept: whether both files hold exactly the expected names, each once.
         max_corner_error: farthest corner of a skin from where it is expected, mm.
         seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
@@ -68,6 +70,7 @@ class Certificate:
     volume_error: float
     flat_area_error: float
     flat_length_error: float
+    stated_error: float
     names_kept: bool
     max_corner_error: float
     seam_gaps: tuple[float, ...]
@@ -112,16 +115,18 @@ def certify(
         _tangency([facts for facts in found if facts.name in chains], label, failures)
         for found, label in ((solids, "solid"), (skins, "skin"))
     ]
-    volume_error, corner_error = 0.0, 0.0
+    volume_error, corner_error, stated_error = 0.0, 0.0, 0.0
     flats: list[FlatFacts] = []
     for panel in panels:
         if panel.name in solid_of:
             volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
         if panel.name in skin_of:
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
-        for label, found in (("solid", solid_of), ("skin", skin_of)):
+        for label, found, said in (("solid", solid_of, panel.said), ("skin", skin_of, panel.said_of_skin)):
             if panel.name in found:
                 _check_placed(panel, label, found[panel.name], failures)
+                if said is not None:
+                    stated_error = max(stated_error, check_stated(label, found[panel.name], said, failures))
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
             if panel.flat is not None:
@@ -144,6 +149,7 @@ def certify(
         volume_error=volume_error,
         flat_area_error=flat_errors[0],
         flat_length_error=flat_errors[1],
+        stated_error=stated_error,
         names_kept=names_kept,
         max_corner_error=corner_error,
         seam_gaps=tuple(gaps),

@@ -9,6 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.brep.step.properties import PartData
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
 
@@ -49,6 +50,7 @@ class ExpectedPanel:
         far_planes: (m, 2, 3) a point on and the normal of the plane in which each flat patch's far face must lie, mm.
         fitted: the panel before it was cut back; None where it was not.
         flat: what its flat pattern says; None to leave it alone.
+        said, said_of_skin: what either file must say of it besides; None to leave that alone.
         placed: where the origin of its coordinates lies in both files, mm.
         sheet: what both files hold of it, to be built anew; None to leave that alone.
 
@@ -62,6 +64,8 @@ class ExpectedPanel:
     far_planes: Array = field(default_factory=lambda: np.empty((0, 2, 3)))
     fitted: Fitted | None = None
     flat: ExpectedFlat | None = None
+    said: PartData | None = None
+    said_of_skin: PartData | None = None
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
     sheet: Sheet | None = None
 

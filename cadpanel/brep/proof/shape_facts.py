@@ -11,8 +11,10 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.proof.boundary import Boundary
+from cadpanel.brep.step.properties import Stated
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
 
+SILENT = Stated()
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
 
 
@@ -38,6 +40,8 @@ class ShapeFacts:
         piece_ends: (e, 2, 3) their two end vertices, mm.
         piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
         other_edges: (o, 2) the same for the edges that are neither.
+        centroid: (3,) of the volume, or of the area of a shape without solids, in the shape's own coordinates, mm.
+        stated: what the file says of it besides.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
         boundary: all that bounds it.
     """
@@ -60,6 +64,8 @@ class ShapeFacts:
     other_edges: IntArray
     surfaces: Array
     boundary: Boundary
+    centroid: Array
+    stated: Stated = SILENT
 
     @property
     def border(self) -> BoolArray:

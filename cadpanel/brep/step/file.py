@@ -17,7 +17,9 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
 from cadpanel.brep.files.xcaf import products_of
-from cadpanel.brep.step.products import Schema, step_file
+from cadpanel.brep.step.products import Header, Schema, step_file
+from cadpanel.brep.step.properties import ATTRIBUTES, PartData, Stated
+from cadpanel.brep.step.stated import stated_of
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError
 
@@ -32,6 +34,8 @@ def write_step(
     title: str,
     schema: Schema = "AP242",
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    data: Sequence[PartData] = (),
+    header: Header | None = None,
 ) -> None:
     """Write a flat assembly, one product a shape with its name and colour, whole or not at all.
 
@@ -43,13 +47,15 @@ def write_step(
         schema: "AP242" or "AP214".
         placed: where the origin of the shapes' coordinates lies in the assembly, mm. Their own numbers stay small: far
             from the origin the kernel's checks lose their digits.
+        data: what is said of each shape besides; empty to say nothing but their names.
+        header: who wrote it, and when.
 
     Raises:
         DeliveryError: if the file cannot be written, or a shape has other than plane, cone and cylinder faces.
     """
     target = Path(path)
     try:
-        text = step_file(shapes, title, schema, placed)
+        text = step_file(shapes, title, schema, placed, data, header)
     except UnsupportedGeometry as error:
         raise DeliveryError(f"{target} cannot be written: it would hold {error}, not an exact panel.") from error
     _write_whole(target, text)
@@ -104,14 +110,18 @@ class OpenStep:
     document: StepDocument
     shapes: list[tuple[str, TopoDS_Shape]]
 
+    def stated(self) -> dict[str, Stated]:
+        """What the file says of its products besides, by their names; nothing if it was not read for it."""
+        return stated_of(self.document.document, ATTRIBUTES)
 
-def open_step(path: str | os.PathLike[str], *, heal: bool = False) -> OpenStep:
-    """The same, for longer work on the shapes."""
+
+def open_step(path: str | os.PathLike[str], *, heal: bool = False, properties: bool = False) -> OpenStep:
+    """The same, for longer work on the shapes; and if asked for, what is said of them besides."""
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"'{target}' cannot be read: there is no such file.")
     try:
-        step = read_document(target, labels=False, heal=heal)
+        step = read_document(target, labels=False, heal=heal, properties=properties)
     except StepFault as error:
         why = f"is damaged ({error.fault})" if error.fault else "is not a complete STEP file"
         raise DeliveryError(f"'{target}' cannot be read: it {why}.") from error

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Literal
 
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
 
+from cadpanel.brep.step.properties import PartData, PropertyWriter
 from cadpanel.brep.step.text import StepText, real, references, string
 from cadpanel.brep.step.topology import TopologyWriter
 
@@ -25,10 +28,24 @@ _SCHEMAS = {
         "core data for automotive mechanical design processes",
     ),
 }
-TIMESTAMP = "1970-01-01T00:00:00"
-"""Always the same, so that the same panels give the same file."""
 UNCERTAINTY = 1e-7
 """Accuracy in mm that the file states for its geometry."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """Who wrote a file, and when.
+
+    Attributes:
+        date: the time that the file states; the same panels at the same time give the same bytes.
+        author, organization: empty where nobody is named.
+        note: what readers should know, one line; empty where there is nothing.
+    """
+
+    date: datetime = datetime(1970, 1, 1, tzinfo=UTC)
+    author: str = ""
+    organization: str = ""
+    note: str = ""
 
 
 def step_file(
@@ -36,8 +53,18 @@ def step_file(
     title: str,
     schema: Schema,
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    data: Sequence[PartData] = (),
+    header: Header | None = None,
 ) -> str:
     """The whole file, the origin of the shapes' coordinates placed somewhere in the assembly, mm.
+
+    Args:
+        shapes: names, shapes and colours.
+        title: name of the assembly.
+        schema: "AP242" or "AP214".
+        placed: where their origin lies in the assembly.
+        data: what is said of each shape; empty to say nothing but their names.
+        header: who wrote it, and when.
 
     Raises:
         UnsupportedGeometry: if a shape is not made of exact panels' geometry.
@@ -45,25 +72,29 @@ def step_file(
     text = StepText()
     schema_name, protocol, application = _SCHEMAS[schema]
     frame = _Frame(text, protocol, application, placed)
-    assembly = frame.product(title, "SHAPE_REPRESENTATION", [frame.origin])
+    assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
     styled = []
-    for number, (name, shape, color) in enumerate(shapes, start=1):
+    said = data or [PartData(number=name) for name, _, _ in shapes]
+    for number, ((name, shape, color), part_data) in enumerate(zip(shapes, said, strict=True), start=1):
         item = TopologyWriter(text).item(shape)
         solid = shape.ShapeType() == TopAbs_SOLID
         kind = "ADVANCED_BREP_SHAPE_REPRESENTATION" if solid else "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
-        part = frame.product(name, kind, [frame.origin, item])
+        part = frame.product(name, part_data, kind, [frame.origin, item])
         frame.place(part, assembly, number, name)
         if color is not None:
             styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
     if styled:
         text.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})")
-    return _header(title, schema_name) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
+    return _header(title, schema_name, header or Header()) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
 
 
-def _header(title: str, schema_name: str) -> str:
+def _header(title: str, schema_name: str, header: Header) -> str:
+    date = header.date.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S+00:00")
+    who = f"({string(header.author)}),({string(header.organization)})"
+    described = ",".join(string(text) for text in ("Exact developable panels", header.note) if text)
     return (
-        "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('Exact developable panels'),'2;1');\n"
-        f"FILE_NAME({string(title)},'{TIMESTAMP}',(''),(''),'cadpanel','cadpanel','');\n"
+        f"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(({described}),'2;1');\n"
+        f"FILE_NAME({string(title)},'{date}',{who},'cadpanel','cadpanel','');\n"
         f"FILE_SCHEMA(('{schema_name}'));\nENDSEC;\nDATA;\n"
     )
 
@@ -90,6 +121,7 @@ class _Frame:
             f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
             f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid_angle}))REPRESENTATION_CONTEXT('',''))"
         )
+        self._properties = PropertyWriter(text, self.context, length)
         self.origin = self._placement((0.0, 0.0, 0.0))
         self._place = self._placement(placed) if any(placed) else self.origin
 
@@ -99,16 +131,17 @@ class _Frame:
         x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
         return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
 
-    def product(self, name: str, kind: str, items: Sequence[int]) -> tuple[int, int]:
+    def product(self, name: str, data: PartData, kind: str, items: Sequence[int]) -> tuple[int, int]:
         """Product definition and shape representation of a new product."""
-        add, label = self._text.add, string(name)
-        product = add(f"PRODUCT({label},{label},'',(#{self._product_context}))")
+        add, said = self._text.add, ",".join(string(text) for text in (data.number, name, data.description))
+        product = add(f"PRODUCT({said},(#{self._product_context}))")
         add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))")
         formation = add(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
         definition = add(f"PRODUCT_DEFINITION('design','',#{formation},#{self._definition_context})")
         shape = add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
         representation = add(f"{kind}('',{references(items)},#{self.context})")
         add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
+        self._properties.write(data, definition, shape)
         return definition, representation
 
     def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str) -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from importlib.util import find_spec
 
+from cadpanel.delivery.outputs.drawings_pdf import DrawingsPdf
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
+from cadpanel.delivery.outputs.panels_glb import PanelsGlb
+from cadpanel.delivery.outputs.panels_ifc import PanelsIfc
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
 from cadpanel.delivery.outputs.setting_out import SettingOut
@@ -19,7 +22,10 @@ OUTPUTS: tuple[Output, ...] = (
     FlatDxf(),
     Schedule(),
     SettingOut(),
+    PanelsGlb(),
     ScheduleXlsx(),
+    DrawingsPdf(),
+    PanelsIfc(),
 )
 
 
@@ -37,9 +43,10 @@ def chosen_outputs(names: Sequence[str] | None, outputs: Sequence[Output] = OUTP
         output for output in outputs if output.always or (output.unasked if names is None else output.name in names)
     ]
     for output in chosen:
-        if output.needs is not None and find_spec(output.needs) is None:
+        missing = [package for package in output.needs if find_spec(package) is None]
+        if missing:
             raise SettingsError(
-                f"the output '{output.name}' needs {output.needs}: install it with "
+                f"the output '{output.name}' needs {' and '.join(missing)}: install it with "
                 f"pip install 'cadpanel[{output.name}]', or leave the output out"
             )
     return tuple(chosen)

@@ -37,7 +37,7 @@ class Output(ABC):
         folders: of those that it may write, each with the bytes that every file in it begins with.
         always: whether every delivery has it.
         unasked: whether a delivery has it where nothing else is asked for.
-        needs: the package that it needs besides, an extra of the same name as the output; None where it needs none.
+        needs: the packages that it needs besides, an extra of the same name as the output.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Output(ABC):
     folders: Mapping[str, bytes] = MappingProxyType({})
     always: bool = False
     unasked: bool = True
-    needs: str | None = None
+    needs: tuple[str, ...] = ()
 
     @abstractmethod
     def write(self, folder: Path, delivery: Delivery) -> None:

@@ -17,7 +17,7 @@ class ScheduleXlsx(Output):
     name = "xlsx"
     files = (WORKBOOK,)
     unasked = False
-    needs = "openpyxl"
+    needs = ("openpyxl",)
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""

@@ -6,11 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.settings import Schema
+from cadpanel.delivery.source_date import source_date
 
 if TYPE_CHECKING:
     from cadpanel.brep.step.file import Color
+    from cadpanel.brep.step.products import Header
+    from cadpanel.brep.step.properties import PartData
     from cadpanel.delivery.sheets import PanelSheet
 
 PANELS = "panels.step"
@@ -37,7 +41,11 @@ class PanelsStep(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        write_solids(folder / PANELS, delivery.panels, delivery.title, delivery.sheet.schema, delivery.placed)
+        from cadpanel.delivery.part_data import solid_data
+
+        data = [found for found in solid_data(delivery) if found is not None]
+        schema, title = delivery.sheet.schema, delivery.title
+        write_solids(folder / PANELS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery))
 
 
 class SkinsStep(Output):
@@ -49,25 +57,65 @@ class SkinsStep(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        write_skins(folder / SKINS, delivery.panels, delivery.title, delivery.sheet.schema, delivery.placed)
+        from cadpanel.delivery.part_data import skin_data
+
+        data = [found for found in skin_data(delivery) if found is not None]
+        schema, title = delivery.sheet.schema, delivery.title
+        write_skins(folder / SKINS, delivery.panels, title, schema, delivery.placed, data, header_of(delivery))
 
 
 def write_solids(
-    path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242", placed: Place = AT_HOME
+    path: Path,
+    panels: Sequence[PanelSheet],
+    title: str,
+    schema: Schema = "AP242",
+    placed: Place = AT_HOME,
+    data: Sequence[PartData] = (),
+    header: Header | None = None,
 ) -> None:
     """Write one solid a panel; the origin of their coordinates is placed somewhere in the assembly, mm.
+
+    Args:
+        path: the file.
+        panels: what is written.
+        title: name of the assembly.
+        schema: "AP242" or "AP214".
+        placed: where the origin lies.
+        data: what is said of each; its number, feature, and numbers to check it by, if empty.
+        header: who wrote it; nobody, now, if None.
 
     Raises:
         DeliveryError: the file cannot be written.
     """
     from cadpanel.brep.step.file import write_step
+    from cadpanel.brep.step.products import Header
+    from cadpanel.brep.step.properties import PartData
+    from cadpanel.delivery.part_data import part_number
 
     shapes = [(panel.shape.name, panel.solid, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{title} panels", schema=schema, placed=placed)
+    said = data or [
+        PartData(number=part_number(title, panel.shape.name), description=panel.shape.feature, validation=panel.check)
+        for panel in panels
+    ]
+    write_step(
+        path,
+        shapes,
+        title=f"{title} panels",
+        schema=schema,
+        placed=placed,
+        data=said,
+        header=header or Header(date=source_date()),
+    )
 
 
 def write_skins(
-    path: Path, panels: Sequence[PanelSheet], title: str, schema: Schema = "AP242", placed: Place = AT_HOME
+    path: Path,
+    panels: Sequence[PanelSheet],
+    title: str,
+    schema: Schema = "AP242",
+    placed: Place = AT_HOME,
+    data: Sequence[PartData] = (),
+    header: Header | None = None,
 ) -> None:
     """Write one open shell a panel, under the same names, in the same colours and at the same place.
 
@@ -75,9 +123,35 @@ def write_skins(
         DeliveryError: the file cannot be written.
     """
     from cadpanel.brep.step.file import write_step
+    from cadpanel.brep.step.products import Header
+    from cadpanel.brep.step.properties import PartData
+    from cadpanel.delivery.part_data import part_number
 
     shapes = [(panel.shape.name, panel.skin, colour(i)) for i, panel in enumerate(panels)]
-    write_step(path, shapes, title=f"{title} skins", schema=schema, placed=placed)
+    said = data or [
+        PartData(number=f"{part_number(title, panel.shape.name)}/skin", validation=panel.skin_check) for panel in panels
+    ]
+    write_step(
+        path,
+        shapes,
+        title=f"{title} skins",
+        schema=schema,
+        placed=placed,
+        data=said,
+        header=header or Header(date=source_date()),
+    )
+
+
+def header_of(contents: Contents) -> Header:
+    """Who writes, when, and in which coordinates.
+
+    Raises:
+        SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
+    """
+    from cadpanel.brep.step.products import Header
+
+    shop = contents.shop
+    return Header(date=source_date(), author=shop.author, organization=shop.organization, note=contents.where)
 
 
 def colour(place: int) -> Color:

@@ -117,6 +117,9 @@ class PanelModel(Record):
         max_free_edge_drift: the same, counted across the free edges only, mm.
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
+        surface: area of all faces of the solid, mm^2; None in reports from before it was told, as are the next two.
+        centroid: of the solid, mm.
+        skin_centroid: of the skin, mm.
         corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
             of a chain, one row round a polygon. Half a joint back from the seams.
         fitted: the same before it was cut back; None in reports from before panels were.
@@ -145,6 +148,9 @@ class PanelModel(Record):
     max_free_edge_drift: NonNegative
     area: Positive
     volume: Positive
+    surface: Positive | None = None
+    centroid: Vector | None = None
+    skin_centroid: Vector | None = None
     corners: tuple[tuple[Vector, ...], ...]
     fitted: FittedModel | None = None
     patches: tuple[PatchModel, ...]
@@ -274,6 +280,7 @@ class CertificateModel(Record):
         flat_area_error: largest relative difference between a flat pattern's area and that of the surface in the solid
             that it unrolls.
         flat_length_error: largest difference between an edge of a skin and the same edge unrolled, mm.
+        stated_error: largest relative difference of a volume or area that the STEP files state from the kernel's.
         names_kept: whether every panel was found again under its name.
         max_seam_gap: mm, measured on the faces that were read, carried on to where the fit has cut them.
         clear: the least and the largest clear width of all joints, mm; None without seams.
@@ -291,6 +298,7 @@ class CertificateModel(Record):
     volume_error: NonNegative
     flat_area_error: NonNegative = 0.0
     flat_length_error: NonNegative = 0.0
+    stated_error: NonNegative = 0.0
     names_kept: bool
     max_seam_gap: NonNegative
     clear: ClearModel | None = None

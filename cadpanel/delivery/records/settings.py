@@ -92,6 +92,9 @@ class SettingsModel(ComparisonSettingsModel):
         density: of the material, kg/m3.
         stock: sheets of the store, mm.
         facet_height: of bends that are pressed, mm.
+        mesh_chord: how far triangles may lie from exact faces, mm.
+        mesh_colours: what colours of meshes tell.
+        material, author, organization: as files name them; empty where they name none.
     """
 
     feature: str
@@ -115,6 +118,11 @@ class SettingsModel(ComparisonSettingsModel):
     density: NonNegative = 2700.0
     stock: tuple[tuple[float, float], ...] = ()
     facet_height: NonNegative = 0.5
+    mesh_chord: NonNegative = 0.5
+    mesh_colours: Literal["feature", "deviation"] = "feature"
+    material: str = ""
+    author: str = ""
+    organization: str = ""
 
     def sheet(self) -> SheetSettings:
         """The settings of the sheet, as they were asked for."""

@@ -1,0 +1,1 @@
+"""Panels as triangles: what viewers and building models take."""

@@ -1,0 +1,1 @@
+"""Drawings on paper: one page a panel, and an overview."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
@@ -29,7 +30,7 @@ from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import Progress, build_panels, say_nothing
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.delivery.verify import prove
+from cadpanel.delivery.verify import prove, prove_more
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
 
@@ -108,10 +109,16 @@ def fill_delivery(
             joint=sheet.joint,
             origin=result.reference.origin,
         )
-        _write(folder, delivery, outputs, tell, helper)
+        first, last = _in_turn(outputs)
+        _write(folder, delivery, first, tell, helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        proved = prove(folder, delivery, outputs, helper)
+        proved = prove(folder, delivery, first, helper)
+        if not proved.certificate.failures:
+            delivery = replace(delivery, seams=proved.seams)
+            for output in last:
+                output.write(folder, delivery)
+            proved = prove_more(proved, folder, delivery, last)
     verified_at = time.perf_counter()
     _demand(proved.certificate)
     report = ReportModel(
@@ -136,6 +143,11 @@ def fill_delivery(
     write_report(report, folder / REPORT)
     tell("verify", 1, 1)
     return report
+
+
+def _in_turn(outputs: Sequence[Output]) -> tuple[list[Output], list[Output]]:
+    """Those that are written first, and those that tell of what is measured on the first ones."""
+    return [one for one in outputs if not one.tells_joints], [one for one in outputs if one.tells_joints]
 
 
 def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Progress, helper: Helper | None) -> None:

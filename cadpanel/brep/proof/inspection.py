@@ -107,10 +107,10 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         closed=all(len(owners) == 2 for _, owners in edges),
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
         volume=volume_of(shape) if solids else 0.0,
-        areas=np.array([_area(face) for face in faces], dtype=np.float64),
+        areas=np.array([area_of(face) for face in faces], dtype=np.float64),
         straight_edges=np.array([ends for ends, _ in straight]).reshape(-1, 2, 3),
         edge_surfaces=np.array([pair for _, pair in straight]).reshape(-1, 2, 9),
-        vertices=_vertices(shape),
+        vertices=vertices_of(shape),
         pieces=_pieces([curve for curve, _ in pieces]),
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
         piece_faces=lies_on[known],
@@ -128,13 +128,14 @@ def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:
     return shape.Located(TopLoc_Location()), np.array(location.TranslationPart().Coord())
 
 
-def _area(face: TopoDS_Face) -> float:
+def area_of(face: TopoDS_Face) -> float:
+    """The kernel's area of a face, mm2."""
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties)
     return float(properties.Mass())
 
 
-def _vertices(shape: TopoDS_Shape) -> Array:
+def vertices_of(shape: TopoDS_Shape) -> Array:
     """(v, 3) every vertex once, mm."""
     known = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_VERTEX, known)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
+from cadpanel.delivery.outputs.freecad import FreecadDocument
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
@@ -20,6 +21,7 @@ OUTPUTS: tuple[Output, ...] = (
     Schedule(),
     SettingOut(),
     ScheduleXlsx(),
+    FreecadDocument(),
 )
 
 

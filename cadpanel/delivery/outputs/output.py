@@ -37,6 +37,7 @@ class Output(ABC):
         folders: of those that it may write, each with the bytes that every file in it begins with.
         always: whether every delivery has it.
         unasked: whether a delivery has it where nothing else is asked for.
+        tells_joints: whether it tells how wide joints are, which is measured on the other files: it is written last.
         needs: the package that it needs besides, an extra of the same name as the output; None where it needs none.
     """
 
@@ -45,6 +46,7 @@ class Output(ABC):
     folders: Mapping[str, bytes] = MappingProxyType({})
     always: bool = False
     unasked: bool = True
+    tells_joints: bool = False
     needs: str | None = None
 
     @abstractmethod

@@ -53,7 +53,12 @@ def import_with_freecad(step_file: Path, *, timeout: float = 120.0) -> list[dict
 
 
 def run_in_freecad(
-    driver: str, given: Mapping[str, str], *, window: bool = False, timeout: float = 120.0
+    driver: str,
+    given: Mapping[str, str],
+    *,
+    window: bool = False,
+    home: Path | None = None,
+    timeout: float = 120.0,
 ) -> dict[str, Any]:
     """What a driver, a script of this folder, has to say.
 
@@ -61,6 +66,7 @@ def run_in_freecad(
         driver: its file.
         given: what it finds in its environment.
         window: whether FreeCAD has its window, on a screen that nobody sees.
+        home: where it keeps preferences and add-ons; a new place, where there are none, if None.
         timeout: seconds to wait.
 
     Raises:
@@ -74,7 +80,7 @@ def run_in_freecad(
         answer_file = Path(folder) / "answer.json"
         process = subprocess.run(
             [*command, str(HERE / driver)],
-            env={**_environment(answer_file, window=window), **given},
+            env={**_environment(answer_file, home or Path(folder), window=window), **given},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -93,15 +99,14 @@ def run_in_freecad(
     return answer
 
 
-def _environment(answer_file: Path, *, window: bool) -> dict[str, str]:
+def _environment(answer_file: Path, home: Path, *, window: bool) -> dict[str, str]:
     """FreeCAD has a Python of its own, which must not find ours; nor may it read or write the user's preferences."""
     ours = ("PYTHON", "VIRTUAL_ENV", "COV_")
     inherited = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
-    home = str(answer_file.parent)
     # The start page is a browser, which refuses to run as the administrator of a bare container.
     screen = {"LIBGL_ALWAYS_SOFTWARE": "1", "QTWEBENGINE_DISABLE_SANDBOX": "1"}
     return (
         inherited
-        | {"HOME": home, "FREECAD_USER_HOME": home, "CADPANEL_ANSWER_FILE": str(answer_file)}
+        | {"HOME": str(home), "FREECAD_USER_HOME": str(home), "CADPANEL_ANSWER_FILE": str(answer_file)}
         | (screen if window else {"QT_QPA_PLATFORM": "offscreen"})
     )

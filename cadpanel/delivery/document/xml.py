@@ -30,6 +30,8 @@ HEAD = "<?xml version='1.0' encoding='utf-8'?>\n"
 _LABEL_STATUS, _SHOWN_STATUS = 134217728, 648
 # What no XML file can hold.
 _NOT_IN_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
+# FreeCAD's own share of the light that comes from everywhere.
+_AMBIENT = (1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0)
 _GROUP = "App::DocumentObjectGroup"
 
 
@@ -213,6 +215,10 @@ def _look(look: Look) -> Iterator[str]:
     for name, color in colors.items():
         if color is not None:
             yield _seen(name, "Color", f'<PropertyColor value="{_packed(color)}"/>')
+    if look.faces is not None:
+        # Without gloss: under FreeCAD 1.0's lamps a flat panel that shines is all white, whatever its colour.
+        dull = f'ambientColor="{_packed(_AMBIENT)}" specularColor="0" emissiveColor="0" shininess="0" transparency="0"'
+        yield _seen("ShapeMaterial", "Material", f'<PropertyMaterial diffuseColor="{_packed(look.faces)}" {dull}/>')
     if look.line_width is not None:
         yield _seen("LineWidth", "FloatConstraint", f'<Float value="{look.line_width!r}"/>')
 

@@ -74,7 +74,7 @@ def unpacked(data: bytes) -> TopoDS_Shape:
 
 
 def brep_text(shape: TopoDS_Shape) -> bytes:
-    """A shape as the text of a .brep file, every digit kept, in its first version, which all programs read."""
+    """A shape as the text of a .brep file, vertices to 15 digits, in its first version, which all programs read."""
     stream = BytesIO()
     version = TopTools_FormatVersion.TopTools_FormatVersion_VERSION_1
     BRepTools.Write_s(shape, stream, False, False, version, Message_ProgressRange())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -14,22 +14,26 @@ from cadpanel.delivery.document.tree import drawn_seams, flat_file, panel_file, 
 from cadpanel.delivery.drawing.entities import Contour, Drawing
 from cadpanel.delivery.drawing.layout import in_rows
 from cadpanel.delivery.drawing.part import bend_lines, contours
-from cadpanel.delivery.outputs.output import Delivery
+from cadpanel.delivery.sheets import PanelSheet
 
 
-def shape_files(delivery: Delivery) -> Iterator[tuple[str, bytes]]:
-    """Name and text of every file, in the order in which objects of the document name them."""
-    panels = delivery.panels
+def shape_files(contents: Contents, panels: Sequence[PanelSheet]) -> Iterator[tuple[str, bytes]]:
+    """Name and text of every file, in the order in which objects of the document name them.
+
+    Args:
+        contents: what the document tells of.
+        panels: the sheets of the panels in it, as they were built.
+    """
     for place, panel in enumerate(panels):
         yield panel_file(place), brep_text(panel.solid)
     places = {panel.shape.name: place for place, panel in enumerate(panels)}
-    for number, seam in enumerate(drawn_seams(delivery)):
+    for number, seam in enumerate(drawn_seams(contents)):
         own = [(places[name], edge) for name, edge in zip(seam.panels, seam.edges, strict=True) if name in places]
         rows = [(panels[place].skin, panels[place].shape.edge(edge).corners) for place, edge in own]
         yield seam_file(number), brep_text(edges_along(rows))
     for place, panel in enumerate(panels):
         yield skin_file(place), brep_text(panel.skin)
-    for place, (contour, lines) in enumerate(laid_out(delivery)):
+    for place, (contour, lines) in enumerate(laid_out(contents)):
         yield flat_file(place), brep_text(flat_face(contour, lines))
 
 

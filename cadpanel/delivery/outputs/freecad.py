@@ -24,7 +24,7 @@ class FreecadDocument(Output):
         from cadpanel.delivery.document.shapes import shape_files
 
         try:
-            (folder / DOCUMENT).write_bytes(archive_bytes(delivery, shape_files(delivery)))
+            (folder / DOCUMENT).write_bytes(archive_bytes(delivery, shape_files(delivery, delivery.panels)))
         except OSError as error:
             raise DeliveryError(f"'{folder / DOCUMENT}' cannot be written: {error.strerror or error}.") from error
 

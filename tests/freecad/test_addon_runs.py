@@ -8,6 +8,7 @@ import sys
 import time
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -112,11 +113,33 @@ def test_a_feature_that_a_program_made_is_refused() -> None:
         fits.options_of(report)
 
 
-def test_rules_name_panels_whatever_they_are_called(tmp_path: Path) -> None:
-    wanted = {'N "1"': "cone", "Süd-02": "plane-cylinder-plane"}
-    fits.write_rules(str(tmp_path / "rules.toml"), wanted)
-    tables = tomllib.loads((tmp_path / "rules.toml").read_text(encoding="utf-8"))["feature"]
-    assert {table["panels"][0]: table["feature"] for table in tables} == wanted
+def a_panel(name: str, feature: str, wanted: str) -> SimpleNamespace:
+    """As the add-on sees it in FreeCAD."""
+    return SimpleNamespace(PanelName=name, Feature=feature, WantedFeature=wanted, PropertiesList=["WantedFeature"])
+
+
+def test_rules_are_those_of_the_delivery_and_of_the_panels_that_were_changed_since(tmp_path: Path) -> None:
+    folds, cone = "plane-cone-plane", "cone"
+    panels = [
+        a_panel('N "1"', folds, cone),  # changed
+        a_panel("Süd-02", cone, cone),  # by a rule
+        a_panel("Süd-03", cone, folds),  # by a rule, and changed back
+        a_panel("N-4", folds, folds),
+    ]
+    lock: dict[str, Any] = {"panels": ["N-4"], "corners": [0, 1], "within": 1e-05}
+    given: dict[str, Any] = {"feature": [{"panels": ["Süd-*"], "feature": cone}], "lock": [lock]}
+    report = {"settings": {"feature": folds, "rules": given}}
+    rules = fits.rules_of(SimpleNamespace(Objects=panels), report)
+    fits.write_rules(str(tmp_path / "rules.toml"), rules)
+    told = tomllib.loads((tmp_path / "rules.toml").read_text(encoding="utf-8"))
+    assert told["lock"] == [lock]
+    assert {table["panels"][0]: table["feature"] for table in told["feature"]} == {'N "1"': cone, "Süd-02": cone}
+    assert given["feature"][0]["panels"] == ["Süd-*"]
+    untouched = SimpleNamespace(Objects=panels[3:])
+    assert fits.rules_of(untouched, {"settings": {"feature": folds}}) == {}
+
+
+def test_a_fit_is_asked_for_as_on_the_command_line() -> None:
     words = fits.arguments_of("a b.step", "out", "--divide 3", "rules.toml")
     assert words == ["fit", "a b.step", "--out", "out", "--tell-steps", "--divide", "3", "--rules", "rules.toml"]
 

@@ -10,7 +10,7 @@ import FreeCAD
 import FreeCADGui
 
 from .documents import DOCUMENT, DeliveryMissing, folder_of, panels_of, report_of
-from .fits import arguments_of, options_of, quoted, reference_near, wanted_features, write_faces, write_rules
+from .fits import arguments_of, options_of, quoted, reference_near, rules_of, wanted_features, write_faces, write_rules
 from .qt import QtCore, QtGui
 from .runs import CadpanelMissing, Run
 
@@ -55,14 +55,10 @@ class FitDialog(QtGui.QDialog):  # type: ignore[misc] # Qt is known inside FreeC
 
     def start(self) -> None:
         """Run cadpanel with what was asked for."""
-        try:
-            wanted = wanted_features(self._document)
-        except DeliveryMissing:
-            wanted = {}
         rules = None
-        if wanted:
+        if self._rules():
             rules = str(Path(self._beside) / "rules.toml")
-            write_rules(rules, wanted)
+            write_rules(rules, self._rules())
         try:
             words = arguments_of(self.reference.text(), self.out.text(), self.options.text(), rules)
             self.run, self.ended = Run(words), None
@@ -116,6 +112,13 @@ class FitDialog(QtGui.QDialog):  # type: ignore[misc] # Qt is known inside FreeC
         self._start.setEnabled(not yes)
         for line in (self.reference, self.options, self.out):
             line.setEnabled(not yes)
+
+    def _rules(self) -> dict[str, list[dict[str, Any]]]:
+        """Those of the delivery and of its panels; none where the document is no delivery."""
+        try:
+            return rules_of(self._document, report_of(folder_of(self._document)))
+        except DeliveryMissing:
+            return {}
 
     def _fill(self) -> None:
         """What the delivery in the document was made with; a new folder beside it."""

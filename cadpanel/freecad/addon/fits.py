@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fnmatch
 import json
 import shlex
 from pathlib import Path
@@ -74,11 +75,29 @@ def wanted_features(document: Any) -> dict[str, str]:
     return {one.PanelName: one.WantedFeature for one in panels_of(document) if one.WantedFeature != one.Feature}
 
 
-def write_rules(path: str, features: dict[str, str]) -> None:
-    """Write a file of rules that gives single panels a feature."""
+def rules_of(document: Any, report: dict[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    """The rules that a delivery was made with, and the features that were changed in FreeCAD since."""
+    settings = report["settings"]
+    rules = dict(settings.get("rules") or {})
+    names = [panel.PanelName for panel in panels_of(document)]
+    features: dict[str, str] = {}
+    for table in rules.pop("feature", []):
+        patterns = [table["panels"]] if isinstance(table["panels"], str) else table["panels"]
+        own = [name for name in names if any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns)]
+        features.update(dict.fromkeys(own, table["feature"]))
+    features.update(wanted_features(document))
     tables = [
-        f"[[feature]]\npanels = {json.dumps([name])}\nfeature = {json.dumps(feature)}\n"
-        for name, feature in features.items()
+        {"panels": [name], "feature": feature} for name, feature in features.items() if feature != settings["feature"]
+    ]
+    return {**rules, "feature": tables} if tables else rules
+
+
+def write_rules(path: str, rules: dict[str, list[dict[str, Any]]]) -> None:
+    """Write a file of rules, as `cadpanel fit --rules` reads it: texts, numbers and lists of JSON are those of TOML."""
+    tables = [
+        "\n".join((f"[[{name}]]", *(f"{key} = {json.dumps(value)}" for key, value in table.items()), ""))
+        for name, several in rules.items()
+        for table in several
     ]
     Path(path).write_text("\n".join(tables), encoding="utf-8")
 

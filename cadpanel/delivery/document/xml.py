@@ -32,6 +32,8 @@ _LABEL_STATUS, _SHOWN_STATUS = 134217728, 648
 _NOT_IN_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
 # FreeCAD's own share of the light that comes from everywhere.
 _AMBIENT = (1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0)
+# How far triangles on the screen may lie from a shape, percent of its size; FreeCAD's own is 0.5.
+_DEVIATION = 1.0
 _GROUP = "App::DocumentObjectGroup"
 
 
@@ -210,6 +212,9 @@ def _column(place: int) -> str:
 
 
 def _look(look: Look) -> Iterator[str]:
+    if look.faces is not None:
+        # Before it is shown, which is when FreeCAD meshes it: half of the time in which a document opens.
+        yield _seen("Deviation", "FloatConstraint", f'<Float value="{_DEVIATION!r}"/>')
     yield _seen("Visibility", "Bool", f'<Bool value="{str(look.visible).lower()}"/>')
     colors: Mapping[str, Color | None] = {"ShapeColor": look.faces, "LineColor": look.lines, "PointColor": look.lines}
     for name, color in colors.items():

@@ -46,7 +46,8 @@ def prove_document(path: Path, contents: Contents) -> Proof:
         solid, skin, flat = (facts[file] for file in files)
         volumes = max(volumes, abs(solid.volume / panel.volume - 1.0), abs(skin.area / panel.area - 1.0))
         near, far = _points(panel.corners), _points(panel.other_face)
-        off = _apart(solid.vertices, np.concatenate([near, far])), _apart(skin.vertices, near)
+        # A solid may have vertices elsewhere, too, round whatever is drilled into it; its volume tells of that.
+        off = _off(np.concatenate([near, far]), solid.vertices), _apart(skin.vertices, near)
         corners = max(corners, *off)
         failures += [f"'{path.name}': panel '{panel.name}': {what}" for what in _panel_faults(panel, solid, skin, off)]
         reach = contents.shop.chord * sum(part.size.edges.values()) + _AREA_SHARE * part.size.area
@@ -126,8 +127,12 @@ def _points(rows: tuple[tuple[tuple[float, float, float], ...], ...]) -> Array:
 
 
 def _apart(found: Array, wanted: Array) -> float:
-    """How far the two sets of points are apart at most, mm: every one has one of the other set nearby."""
-    if not len(found) or not len(wanted):
+    """How far two sets of points (n, 3) and (m, 3) are apart at most, mm: each point from the other set's nearest."""
+    return max(_off(found, wanted), _off(wanted, found))
+
+
+def _off(points: Array, others: Array) -> float:
+    """How far a point of some (n, 3) is from the nearest of others (m, 3), at most, mm."""
+    if not len(points) or not len(others):
         return _NOWHERE
-    between = np.linalg.norm(found[:, None] - wanted, axis=-1)
-    return float(max(between.min(axis=0).max(), between.min(axis=1).max()))
+    return float(np.linalg.norm(points[:, None] - others, axis=-1).min(axis=1).max())

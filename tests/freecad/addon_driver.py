@@ -5,6 +5,7 @@ What users choose in a window of the system is given; all else goes through the 
 
 import json
 import os
+import shutil
 import time
 import traceback
 from collections.abc import Callable
@@ -66,6 +67,29 @@ def commands(folder: str) -> "dict[str, Any]":
     return found
 
 
+def chosen_faces() -> "dict[str, Any]":
+    """Choose a skin that was moved, and one face of another one, as the reference of a fit."""
+    import FreeCAD
+    import FreeCADGui
+    from freecad.cadpanel_workbench.fit_dialog import FitDialog
+
+    document = FreeCAD.ActiveDocument
+    FreeCADGui.Selection.clearSelection()
+    dialog = FitDialog(document)
+    dialog.choose_selected()
+    found: dict[str, Any] = {"nothing": dialog.message.text()}
+    first, second = document.getObject("Skin1"), document.getObject("Skin2")
+    first.Placement.Base.z = 500.0
+    FreeCADGui.Selection.addSelection(first)
+    FreeCADGui.Selection.addSelection(second, "Face2")
+    dialog.choose_selected()
+    shutil.copy(dialog.reference.text(), os.environ["CADPANEL_FACES"])
+    found |= {"message": dialog.message.text(), "options": dialog.options.text()}
+    found["areas"] = [face.Area for face in (*first.Shape.Faces, second.Shape.Faces[1])]
+    found["heights"] = [first.Shape.BoundBox.ZMin, second.Shape.Faces[1].BoundBox.ZMin]
+    return found
+
+
 def refit(folder: str) -> "dict[str, Any]":
     """Fit once and cancel, fit again, and look at what was opened; then a fit that is refused."""
     import FreeCAD
@@ -106,6 +130,7 @@ def answer() -> None:
     try:
         folder = os.environ["CADPANEL_DELIVERY"]
         found = commands(folder)
+        found["faces"] = chosen_faces()
         import FreeCAD
 
         FreeCAD.closeDocument(FreeCAD.ActiveDocument.Name)

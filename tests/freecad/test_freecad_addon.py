@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from cadpanel.api import inspect
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.document.colors import STOPS
@@ -19,6 +20,7 @@ from tests.delivered import LIP
 from tests.freecad.program import run_in_freecad
 
 pytestmark = pytest.mark.freecad
+FACES = "faces.brep"
 NAMES = ["N-01", "N-02", "N-03"]
 
 
@@ -39,7 +41,8 @@ def answer(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, 
         place = install()
         assert place == folder_of_addons() / "cadpanel"
         assert home in place.parents
-    return run_in_freecad("addon_driver.py", {"CADPANEL_DELIVERY": str(folder)}, window=True, home=home, timeout=300.0)
+    given = {"CADPANEL_DELIVERY": str(folder), "CADPANEL_FACES": str(folder.parent / FACES)}
+    return run_in_freecad("addon_driver.py", given, window=True, home=home, timeout=300.0)
 
 
 def test_freecad_finds_the_workbench_and_all_its_commands(answer: dict[str, Any]) -> None:
@@ -91,3 +94,13 @@ def test_a_fit_tells_its_steps_is_cancelled_without_a_trace_and_opens_what_it_wr
     assert run["opened"] == [str(folder.parent / "delivery-2" / DOCUMENT), NAMES]
     assert run["refused"][0] == 2
     assert "exists already" in run["refused"][1]
+
+
+def test_chosen_faces_become_a_reference_where_they_stand(answer: dict[str, Any], folder: Path) -> None:
+    told = answer["faces"]
+    assert told["nothing"].startswith("Nothing with faces is chosen")
+    assert told["message"].startswith("4 faces are the skin")
+    assert told["options"] == "--unit mm --divide 8"
+    survey = inspect(folder.parent / FACES, unit="mm")
+    assert [face.area for face in survey.faces] == [pytest.approx(area, rel=1e-6) for area in told["areas"]]
+    assert folder.parent.joinpath(FACES).is_file()

@@ -14,7 +14,8 @@ from .documents import DeliveryMissing, document_in, named, show_flats
 from .fit_dialog import FitDialog
 from .qt import QtGui
 
-ICON = str(Path(__file__).with_name("cadpanel.svg"))
+HERE = Path(__file__).parent
+ICON = str(HERE / "cadpanel.svg")
 _WAYS = (*BY, FEATURE)
 
 
@@ -28,12 +29,12 @@ def say(text: str, *, fault: bool = False) -> None:
 class Command:
     """A command that needs a delivery, if not said otherwise; what it lacks is said in one sentence."""
 
-    text, tip = "", ""
+    text, tip, icon = "", "", "cadpanel"
     needs_document = True
 
     def GetResources(self) -> dict[str, str]:  # noqa: N802 - FreeCAD's name
         """What FreeCAD shows of it."""
-        return {"MenuText": self.text, "ToolTip": self.tip, "Pixmap": ICON}
+        return {"MenuText": self.text, "ToolTip": self.tip, "Pixmap": str(HERE / f"{self.icon}.svg")}
 
     def IsActive(self) -> bool:  # noqa: N802
         """Whether it can be chosen."""
@@ -59,6 +60,7 @@ class Command:
 class OpenDelivery(Command):
     """Opens the document in the folder of a delivery."""
 
+    icon = "open"
     text, tip = "Open delivery...", "Open the folder that cadpanel wrote"
     needs_document = False
 
@@ -83,6 +85,7 @@ def open_delivery(folder: str) -> Any:
 class ColorBy(Command):
     """Colours panels; one entry a way."""
 
+    icon = "color"
     text, tip = "Colour by", "Colour panels by a number or by their feature"
 
     def GetCommands(self) -> list[str]:  # noqa: N802
@@ -97,6 +100,8 @@ class ColorBy(Command):
 class ColorByOne(Command):
     """Colours panels by one of their numbers."""
 
+    icon = "color"
+
     def __init__(self, what: str) -> None:
         """By what."""
         self._what = what
@@ -110,6 +115,7 @@ class ColorByOne(Command):
 class FlatPatterns(Command):
     """Shows flat patterns instead of panels, or panels again."""
 
+    icon = "flat"
     text, tip = "Flat patterns", "Show the flat patterns instead of the panels, or the panels again"
 
     def work(self, document: Any) -> None:
@@ -123,6 +129,7 @@ class FlatPatterns(Command):
 class FindPanel(Command):
     """Chooses panels by name, and shows them."""
 
+    icon = "find"
     text, tip = "Find panel...", "Choose panels by their name, with * for anything"
 
     def work(self, document: Any) -> None:
@@ -151,6 +158,7 @@ def find(document: Any, pattern: str) -> list[str]:
 class CheckDelivery(Command):
     """Holds the document against its delivery."""
 
+    icon = "check"
     text, tip = "Check against delivery", "What was moved, changed, lost or added since the delivery was written"
 
     def work(self, document: Any) -> None:
@@ -164,6 +172,7 @@ class CheckDelivery(Command):
 class Fit(Command):
     """Asks for a fit and runs it."""
 
+    icon = "fit"
     text, tip = "Fit...", "Fit panels to a reference, or the panels of this delivery again with other features"
     needs_document = False
     dialog: Any | None = None

@@ -29,7 +29,7 @@ class FitDialog(QtGui.QDialog):  # type: ignore[misc] # Qt is known inside FreeC
         self.run: Run | None = None
         self.ended: int | None = None
         self._document = document
-        self._beside = tempfile.mkdtemp(prefix="cadpanel-")
+        self._beside = tempfile.TemporaryDirectory(prefix="cadpanel-")  # deleted with the window
         self.reference, self.options, self.out = (QtGui.QLineEdit(self) for _ in range(3))
         self.message = QtGui.QLabel(self)
         self.message.setWordWrap(True)
@@ -43,7 +43,7 @@ class FitDialog(QtGui.QDialog):  # type: ignore[misc] # Qt is known inside FreeC
     def choose_selected(self) -> None:
         """Take the faces that are chosen in the document as the reference."""
         chosen = [(one.Object, one.SubElementNames) for one in FreeCADGui.Selection.getSelectionEx()]
-        path = str(Path(self._beside) / "chosen_faces.brep")
+        path = str(Path(self._beside.name) / "chosen_faces.brep")
         try:
             count = write_faces(path, chosen)
         except DeliveryMissing as error:
@@ -57,7 +57,7 @@ class FitDialog(QtGui.QDialog):  # type: ignore[misc] # Qt is known inside FreeC
         """Run cadpanel with what was asked for."""
         rules = None
         if self._rules():
-            rules = str(Path(self._beside) / "rules.toml")
+            rules = str(Path(self._beside.name) / "rules.toml")
             write_rules(rules, self._rules())
         try:
             words = arguments_of(self.reference.text(), self.out.text(), self.options.text(), rules)

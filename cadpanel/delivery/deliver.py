@@ -110,14 +110,13 @@ def fill_delivery(
             origin=result.reference.origin,
         )
         first, last = _in_turn(outputs)
-        _write(folder, delivery, first, tell, helper)
+        _write(folder, delivery, first, _part(tell, 0, len(outputs)), helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
         proved = prove(folder, delivery, first, helper)
         if not proved.certificate.failures:
             delivery = replace(delivery, seams=proved.seams)
-            for output in last:
-                output.write(folder, delivery)
+            _write(folder, delivery, last, _part(tell, len(first), len(outputs)), helper)
             proved = prove_more(proved, folder, delivery, last)
     verified_at = time.perf_counter()
     _demand(proved.certificate)
@@ -158,6 +157,11 @@ def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Pr
         if helper is not None and SKINS in output.files:
             helper.begin(folder / SKINS)
     tell("write", len(outputs), len(outputs))
+
+
+def _part(tell: Progress, before: int, of: int) -> Progress:
+    """Progress of a part of what is done, of which so much is done before."""
+    return lambda step, done, _: tell(step, before + done, of)
 
 
 def _demand(certificate: CertificateModel) -> None:

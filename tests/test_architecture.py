@@ -206,7 +206,6 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
-    "cadpanel.cli.tables": "tests/cli/test_fit.py",
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.document.neighbours": "tests/freecad/test_freecad_document.py",
     "cadpanel.delivery.document.panels": "tests/freecad/test_freecad_document.py",

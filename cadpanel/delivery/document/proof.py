@@ -97,12 +97,17 @@ def _panel_faults(panel: PanelModel, solid: KeptFacts, skin: KeptFacts, off: tup
 def _seam_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator[str]:
     panels = {panel.name: panel for panel in contents.records}
     for place, seam in enumerate(drawn_seams(contents)):
-        rows = list(_rows(seam, panels))
+        of = f"the seam of '{seam.panels[0]}' and '{seam.panels[1]}'"
         kept = facts.get(seam_file(place))
+        try:
+            rows = list(_rows(seam, panels))
+        except ValueError as error:
+            yield f"{of} is not where the report says it: {error}."
+            continue
         if kept is None or kept.edges != sum(len(row) - 1 for row in rows):
-            yield f"the seam of '{seam.panels[0]}' and '{seam.panels[1]}' is not drawn from corner to corner."
+            yield f"{of} is not drawn from corner to corner."
         elif _apart(kept.vertices, np.concatenate(rows)) > POSITION_LIMIT:
-            yield f"the seam of '{seam.panels[0]}' and '{seam.panels[1]}' is not drawn where the two panels end."
+            yield f"{of} is not drawn where the two panels end."
 
 
 def _rows(seam: SeamModel, panels: Mapping[str, PanelModel]) -> Iterator[Array]:
@@ -112,9 +117,16 @@ def _rows(seam: SeamModel, panels: Mapping[str, PanelModel]) -> Iterator[Array]:
 
 
 def edge_row(panel: PanelModel, edge: str) -> Array:
-    """(m, 3) the corners of a panel's record along one of its edges, mm."""
+    """(m, 3) the corners of a panel's record along one of its edges, mm.
+
+    Raises:
+        ValueError: the panel has no such edge.
+    """
     word, number = edge.split()
     corners, place = np.array(panel.corners), int(number)
+    four_sided = len(corners) == 2
+    if (word == "edge") == four_sided or place >= (2 if four_sided else corners.shape[1]):
+        raise ValueError(f"panel '{panel.name}' has no {edge}")
     if word == "end":
         return np.asarray(corners[place])
     if word == "side":

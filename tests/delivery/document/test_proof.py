@@ -145,6 +145,15 @@ def test_edges_of_records_are_those_of_panels(delivery: Delivery) -> None:
             assert edge_row(record, edge) == pytest.approx(panel.shape.edge(edge).corners)
 
 
+def test_a_seam_along_an_edge_that_there_is_not_is_told(delivery: Delivery, written: bytes, tmp_path: Path) -> None:
+    (tmp_path / "panels.FCStd").write_bytes(written)
+    strange = delivery.seams[0].model_copy(update={"edges": ("edge 7", "end 0")})
+    failures = prove_document(
+        tmp_path / "panels.FCStd", replace(delivery, seams=(strange, *delivery.seams[1:]))
+    ).failures
+    assert any("is not where the report says it: panel 'N 1' has no edge 7." in failure for failure in failures)
+
+
 def test_only_panels_that_are_delivered_stand_in_the_tree_with_the_seams_that_they_have(delivery: Delivery) -> None:
     one = replace(delivery, panels=delivery.panels[:1], records=delivery.records[:1], parts=delivery.parts[:1])
     labels = [thing.label for thing in tree(one)]

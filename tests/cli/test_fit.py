@@ -33,6 +33,7 @@ PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 def test_a_delivery_holds_its_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
+        "manifest.json",
         "panels.FCStd",
         "panels.step",
         "report.json",

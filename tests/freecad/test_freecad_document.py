@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.freecad import DOCUMENT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings

@@ -18,6 +18,7 @@ from cadpanel.brep.files.model import Model
 from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
+from cadpanel.brep.proof.archive import kept_facts
 from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
@@ -67,6 +68,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),
     "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
+    "kept": lambda request, _: kept_facts(request.path),
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
     "close": lambda _request, _: INSPECTOR.close(),
 }

@@ -52,6 +52,7 @@ def fit(
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
     time_limit: options.TimeLimit = None,
+    tell_steps: options.TellSteps = False,
 ) -> None:
     """Fit panels to a reference and deliver them as exact solids, with the proof beside them.
 
@@ -63,7 +64,7 @@ def fit(
     began = time.perf_counter()
     chosen_outputs(shop.outputs)  # refused before anything else is done, and so is a date that is none
     source_date()
-    with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet) as shown:
+    with delivery_folder(out, overwrite=overwrite) as folder, steps(quiet=quiet, told=tell_steps) as shown:
         run = _find if how.divide == AUTO else _run
         report, shortfall = run(reference, how, settings, Asked(sheet, shop), folder, shown, time_limit)
     if not quiet:

@@ -16,6 +16,7 @@ from cadpanel.cli.compare import compare
 from cadpanel.cli.diff import diff
 from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
+from cadpanel.cli.freecad import freecad
 from cadpanel.cli.inspect import inspect
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
@@ -56,6 +57,7 @@ def cadpanel(
 
 for command in COMMANDS:
     app.command()(command)
+app.add_typer(freecad)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -50,6 +50,10 @@ TimeLimit = Annotated[
         help="End the fit of all panels after so long, with the best so far; what is missed is told.",
     ),
 ]
+TellSteps = Annotated[
+    bool,
+    typer.Option("--tell-steps", help="Tell each step as a line of JSON on the error stream, for programs to show."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.")]
 
 

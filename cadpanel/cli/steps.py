@@ -1,7 +1,9 @@
-"""Progress of long steps: bars on a terminal, nothing where the output goes to a file."""
+"""Progress of long steps: bars on a terminal, nothing where the output goes to a file, or lines for programs."""
 
 from __future__ import annotations
 
+import json
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -45,10 +47,7 @@ class Steps:
         """Say how far the concurrent fit is from its tolerances and the reference; begins where it has not begun."""
         if step not in self._tasks:
             self.begin(step)
-        self._progress.update(
-            self._tasks[step],
-            detail=f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm",
-        )
+        self._progress.update(self._tasks[step], detail=_solving(count, excess, rms))
 
     def end(self) -> None:
         """All steps are done."""
@@ -60,9 +59,37 @@ class Steps:
         self._progress.stop_task(task)
 
 
+class ToldSteps(Steps):
+    """Steps as lines of JSON on the error stream: their name, how much is done of how much, and a detail."""
+
+    def begin(self, step: str, detail: str = "") -> None:
+        """See `Steps.begin`."""
+        super().begin(step, detail)
+        self._tell(step, 0, 1, detail)
+
+    def count(self, step: str, done: int, of: int) -> None:
+        """See `Steps.count`."""
+        super().count(step, done, of)
+        self._tell(_DELIVERING.get(step, step), done, of, "")
+
+    def solving(self, step: str, count: int, excess: float, rms: float) -> None:
+        """See `Steps.solving`."""
+        super().solving(step, count, excess, rms)
+        self._tell(step, 0, 1, _solving(count, excess, rms))
+
+    def _tell(self, step: str, done: int, of: int, detail: str) -> None:
+        line = json.dumps({"step": step, "done": done, "of": of, "detail": detail})
+        sys.stderr.write(f"{line}\n")
+        sys.stderr.flush()
+
+
+def _solving(count: int, excess: float, rms: float) -> str:
+    return f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm"
+
+
 @contextmanager
-def steps(*, quiet: bool) -> Iterator[Steps]:
-    """Show steps on the terminal's error stream while the block runs."""
+def steps(*, quiet: bool, told: bool = False) -> Iterator[Steps]:
+    """Show steps on the terminal's error stream while the block runs, or tell them there as lines for programs."""
     console = Console(stderr=True)
     progress = Progress(
         SpinnerColumn(finished_text="[green]ok"),
@@ -71,9 +98,9 @@ def steps(*, quiet: bool) -> Iterator[Steps]:
         TimeElapsedColumn(),
         TextColumn("[dim]{task.fields[detail]}"),
         console=console,
-        disable=quiet or not console.is_terminal,
+        disable=quiet or told or not console.is_terminal,
     )
     with progress:
-        shown = Steps(progress)
+        shown = ToldSteps(progress) if told else Steps(progress)
         yield shown
         shown.end()

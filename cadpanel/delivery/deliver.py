@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
@@ -30,7 +31,7 @@ from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import Progress, build_panels, say_nothing
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.delivery.verify import prove
+from cadpanel.delivery.verify import prove, prove_more
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
 
@@ -109,10 +110,15 @@ def fill_delivery(
             joint=sheet.joint,
             origin=result.reference.origin,
         )
-        _write(folder, delivery, outputs, tell, helper)
+        first, last = _in_turn(outputs)
+        _write(folder, delivery, first, _part(tell, 0, len(outputs)), helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        proved = prove(folder, delivery, outputs, helper)
+        proved = prove(folder, delivery, first, helper)
+        if not proved.certificate.failures:
+            delivery = replace(delivery, seams=proved.seams)
+            _write(folder, delivery, last, _part(tell, len(first), len(outputs)), helper)
+            proved = prove_more(proved, folder, delivery, last)
     verified_at = time.perf_counter()
     _demand(proved.certificate)
     report = ReportModel(
@@ -139,6 +145,11 @@ def fill_delivery(
     return report
 
 
+def _in_turn(outputs: Sequence[Output]) -> tuple[list[Output], list[Output]]:
+    """Those that are written first, and those that tell of what is measured on the first ones."""
+    return [one for one in outputs if not one.tells_joints], [one for one in outputs if one.tells_joints]
+
+
 def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Progress, helper: Helper | None) -> None:
     """Every output that is asked for; a helper reads the skins while the others are being written."""
     for place, output in enumerate(outputs):
@@ -147,6 +158,11 @@ def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Pr
         if helper is not None and SKINS in output.files:
             helper.begin(folder / SKINS)
     tell("write", len(outputs), len(outputs))
+
+
+def _part(tell: Progress, before: int, of: int) -> Progress:
+    """Progress of a part of what is done, of which so much is done before."""
+    return lambda step, done, _: tell(step, before + done, of)
 
 
 def _demand(certificate: CertificateModel) -> None:

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from cadpanel.errors import SettingsError
 
 VARIABLE = "SOURCE_DATE_EPOCH"
+_FIRST_YEAR = 1980  # of dates in an archive
 
 
 def source_date() -> datetime:
@@ -23,3 +24,13 @@ def source_date() -> datetime:
         return datetime.fromtimestamp(int(said), UTC)
     except (ValueError, OverflowError, OSError) as error:
         raise SettingsError(f"{VARIABLE} must be a number of seconds since 1970, not '{said}'") from error
+
+
+def archive_date() -> tuple[int, int, int, int, int, int]:
+    """The same as archives keep it, which know no year before 1980.
+
+    Raises:
+        SettingsError: what the environment says is no number of seconds.
+    """
+    date = source_date()
+    return max(date.year, _FIRST_YEAR), date.month, date.day, date.hour, date.minute, date.second

@@ -9,7 +9,7 @@ from pathlib import Path
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
-from cadpanel.delivery.contents import Contents
+from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.manifest import MANIFEST, changed_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
@@ -126,12 +126,36 @@ def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: H
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
-    found = {output.name: output.prove(folder, contents) for output in outputs if not output.always}
+    found = _prove_each(folder, contents, outputs)
     proved = prove_steps(folder, contents, helper)
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),
-        *(fault for proof in found.values() for fault in proof.failures),
     )
+    certificate = proved.certificate.model_copy(update={"failures": failures})
+    return replace(proved, certificate=_with_outputs(certificate, found))
+
+
+def prove_more(proved: Proved, folder: Path, contents: Contents, outputs: Sequence[Output]) -> Proved:
+    """The same with what further outputs show, which were written when joints had been measured.
+
+    Raises:
+        DeliveryError: one of the files cannot be read at all.
+    """
+    return replace(proved, certificate=_with_outputs(proved.certificate, _prove_each(folder, contents, outputs)))
+
+
+def _prove_each(folder: Path, contents: Contents, outputs: Sequence[Output]) -> dict[str, Proof]:
+    return {output.name: output.prove(folder, contents) for output in outputs if not output.always}
+
+
+def _with_outputs(certificate: CertificateModel, found: dict[str, Proof]) -> CertificateModel:
+    """A certificate with what outputs show."""
     numbers = {name: proof.numbers for name, proof in found.items()}
-    return replace(proved, certificate=proved.certificate.model_copy(update={"outputs": numbers, "failures": failures}))
+    faults = [fault for proof in found.values() for fault in proof.failures]
+    return certificate.model_copy(
+        update={
+            "outputs": {**certificate.outputs, **numbers},
+            "failures": (*certificate.failures, *faults),
+        }
+    )

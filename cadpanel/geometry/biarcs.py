@@ -22,6 +22,9 @@ _SAMPLES = 17
 _USED = 0.8
 # A curve that leaves its chord by less than this part of the tolerance is a segment.
 _STRAIGHT = 0.01
+# An arc that bows by less is a line to every program: by less than this, mm, and by less than this times its chord's
+# square, 1/mm: its centre would be so far away that its ends, told by angles, would be off by 1e-6 mm.
+_LEAST_BOW, _LEAST_CURVATURE = 1e-6, 3e-10
 # By how much more stretches there are at most in the next attempt.
 _MOST_MORE = 4.0
 
@@ -136,3 +139,9 @@ def arc_circle(start: Array, stop: Array, bulge: float) -> tuple[Array, float]:
     left = np.array([-chord[1], chord[0]])
     centre: Array = 0.5 * (start + stop) + left * (1.0 - bulge**2) / (4.0 * bulge)
     return centre, math.hypot(*chord) * (1.0 + bulge**2) / (4.0 * abs(bulge))
+
+
+def all_but_straight(start: Array, stop: Array, bulge: float) -> bool:
+    """Whether an arc is told better as the line between its ends: its centre would be too far away to be told."""
+    chord = math.dist(start, stop)
+    return abs(bulge) * 0.5 * chord < max(_LEAST_BOW, _LEAST_CURVATURE * chord**2)

@@ -36,6 +36,7 @@ def test_a_delivery_holds_its_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
         "manifest.json",
+        "panels.FCStd",
         "panels.glb",
         "panels.step",
         "report.json",
@@ -408,7 +409,7 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
     [
         (
             "--outputs flat",
-            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, xlsx, pdf, ifc.",
+            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, xlsx, pdf, ifc, freecad.",
         ),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),

@@ -16,10 +16,11 @@ from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.panel import Panel
 from tests.delivered import fitted
-from tests.freecad.importer import import_with_freecad
+from tests.freecad.program import import_with_freecad
 from tests.instances import NAMES, random_polygon, random_shapes
 
 pytestmark = pytest.mark.freecad
@@ -28,7 +29,7 @@ pytestmark = pytest.mark.freecad
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("freecad") / "delivery"
-    deliver(fitted(), out)
+    deliver(fitted(), out, shop=ShopSettings(outputs=("step",)))
     return out
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import cadquery as cq
 import pytest
 
-from tests.freecad import importer
-from tests.freecad.importer import import_with_freecad
+from tests.freecad import program
+from tests.freecad.program import import_with_freecad
 
 pytestmark = pytest.mark.freecad
 
@@ -86,7 +86,7 @@ def test_solids_stand_where_they_were_put(objects: dict[str, dict[str, object]])
 
 def test_a_file_that_is_not_step_is_an_error_and_not_an_empty_answer(tmp_path: Path) -> None:
     (tmp_path / "no.step").write_text("this is not STEP")
-    with pytest.raises(RuntimeError, match="FreeCAD could not import"):
+    with pytest.raises(RuntimeError, match="FreeCAD could not run import_driver"):
         import_with_freecad(tmp_path / "no.step")
 
 
@@ -94,7 +94,7 @@ def test_a_file_that_is_not_step_is_an_error_and_not_an_empty_answer(tmp_path: P
 def test_a_missing_freecad_is_a_skip_unless_it_is_required(
     monkeypatch: pytest.MonkeyPatch, required: str, outcome: type[BaseException]
 ) -> None:
-    monkeypatch.setattr(importer, "PROGRAMS", ("a-program-that-is-not-there",))
-    monkeypatch.setenv(importer.REQUIRED, required)
+    monkeypatch.setattr(program, "PROGRAMS", ("a-program-that-is-not-there",))
+    monkeypatch.setenv(program.REQUIRED, required)
     with pytest.raises(outcome, match="not installed"):
         import_with_freecad(Path("any.step"))

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.Geom import Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
+from OCP.Geom import Geom_Circle, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
-from OCP.gp import gp_Elips
+from OCP.gp import gp_Circ, gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
@@ -43,6 +43,15 @@ def arc_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, section: EllipticSection
     turn = cross(section.cosine_axis / major, section.sine_axis / minor)
     conic = gp_Elips(kernel.conic_frame(section.center, turn, section.cosine_axis / major), major, minor)
     return _edge(Geom_Ellipse(conic), first, last, section.start, section.stop)
+
+
+def circle_edge(
+    first: TopoDS_Vertex, last: TopoDS_Vertex, center: Array, start: Array, turn: Array, sweep: float
+) -> TopoDS_Edge:
+    """The arc of a circle from (3,) start on, by `sweep` radians about the unit vector `turn` through the center."""
+    radius = float(np.linalg.norm(start - center))
+    circle = gp_Circ(kernel.conic_frame(center, turn, (start - center) / radius), radius)
+    return _edge(Geom_Circle(circle), first, last, 0.0, sweep)
 
 
 def _edge(curve: Geom_Curve, first: TopoDS_Vertex, last: TopoDS_Vertex, start: float, stop: float) -> TopoDS_Edge:

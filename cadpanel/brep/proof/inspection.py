@@ -141,7 +141,7 @@ def _boundary(
     shape: TopoDS_Shape, edges: Sequence[tuple[TopoDS_Edge, list[int]]], surfaces: Sequence[list[float] | None]
 ) -> Boundary:
     return Boundary(
-        vertices=_vertices(shape),
+        vertices=vertices_of(shape),
         edges=np.array([_points(edge) for edge, _ in edges]).reshape(-1, EDGE_POINTS, 3),
         edge_faces=np.array([(*of, -1)[:2] for _, of in edges], dtype=np.intp).reshape(-1, 2),
         surfaces=np.array([numbers or [np.nan] * 9 for numbers in surfaces]).reshape(-1, 9),
@@ -166,7 +166,7 @@ def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:
     return shape.Located(TopLoc_Location()), np.array(location.TranslationPart().Coord())
 
 
-def _vertices(shape: TopoDS_Shape) -> Array:
+def vertices_of(shape: TopoDS_Shape) -> Array:
     """(v, 3) every vertex once, mm."""
     known = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_VERTEX, known)

@@ -20,6 +20,7 @@ from typing import cast
 from cadpanel.brep.isolation.client import READER, Interpreter
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
 from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.errors import DeliveryError, PanelError
@@ -81,6 +82,10 @@ class _File:
         found = cast(list[float], self.ask("common", pairs))
         self.ask("close")
         return found
+
+    def kept(self) -> dict[str, KeptFacts]:
+        """Facts of the shapes that it keeps as text."""
+        return cast(dict[str, KeptFacts], self.ask("kept", reads=True))
 
     def rebuilt(self, sheets: Sequence[Sheet]) -> list[Rebuilt | PanelError]:
         """What the kernel makes of sheets, some at a time, so that none has to wait for an answer for long."""
@@ -162,6 +167,15 @@ def inspect_files(
         if started is None:
             return _File(READER, panels).all_facts(), _File(READER, skins).all_facts()
         return _inspect_together(panels, skins, started)
+
+
+def inspect_archive(path: Path) -> dict[str, KeptFacts]:
+    """Facts of every shape that an archive keeps as text, by the names of their files.
+
+    Raises:
+        DeliveryError: it cannot be read, or the kernel crashes over it or does not end.
+    """
+    return _File(READER, path).kept()
 
 
 def rebuild(

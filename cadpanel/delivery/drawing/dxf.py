@@ -22,7 +22,7 @@ from cadpanel.arrays import Array
 from cadpanel.delivery.drawing.entities import Contour, Entity, Line, Text
 from cadpanel.delivery.shop_settings import LAYERS, DxfEntities, ShopSettings
 from cadpanel.delivery.source_date import source_date
-from cadpanel.geometry.biarcs import arc_circle
+from cadpanel.geometry.biarcs import all_but_straight, arc_circle
 
 MARK = b"999\r\ncadpanel\r\n"
 """How every drawing of ours begins: a comment."""
@@ -34,9 +34,6 @@ _DATES = re.compile(r"(\$TD(?:U?CREATE|U?UPDATE)\n 40\n)[^\n]*")
 _GUIDS = re.compile(r"(\$(?:FINGERPRINT|VERSION)GUID\n  2\n)[^\n]*")
 _WRITTEN = re.compile(r"( @ )\d{4}-\d\d-\d\dT[^\n]*")
 _SEED = re.compile(r"(\$HANDSEED\n  5\n)[^\n]*")
-# An arc that bows by less is written as a line: by less than this, mm, and by less than this times its chord's square,
-# 1/mm: its centre would be so far away that its ends, told by angles, would be off by 1e-6 mm.
-_LEAST_BOW, _LEAST_CURVATURE = 1e-6, 3e-10
 
 
 class Frame(NamedTuple):
@@ -130,8 +127,7 @@ def _polyline(vertices: Array) -> str:
 def _lines_and_arcs(contour: Contour) -> Iterator[tuple[str, str]]:
     starts = contour.vertices[:, :2]
     for start, stop, bulge in zip(starts, np.roll(starts, -1, axis=0), contour.vertices[:, 2].tolist(), strict=True):
-        chord = math.dist(start, stop)
-        if abs(bulge) * 0.5 * chord < max(_LEAST_BOW, _LEAST_CURVATURE * chord**2):
+        if all_but_straight(start, stop, bulge):
             yield "LINE", _line(start, stop)
             continue
         centre, radius = arc_circle(start, stop, bulge)

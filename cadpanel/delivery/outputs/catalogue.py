@@ -7,6 +7,7 @@ from importlib.util import find_spec
 
 from cadpanel.delivery.outputs.drawings_pdf import DrawingsPdf
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
+from cadpanel.delivery.outputs.freecad import FreecadDocument
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.panels_glb import PanelsGlb
 from cadpanel.delivery.outputs.panels_ifc import PanelsIfc
@@ -26,6 +27,7 @@ OUTPUTS: tuple[Output, ...] = (
     ScheduleXlsx(),
     DrawingsPdf(),
     PanelsIfc(),
+    FreecadDocument(),
 )
 
 

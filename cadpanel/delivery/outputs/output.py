@@ -38,6 +38,7 @@ class Output(ABC):
         always: whether every delivery has it.
         unasked: whether a delivery has it where nothing else is asked for.
         needs: the packages that it needs besides, an extra of the same name as the output.
+        tells_joints: whether it tells how wide joints are, which is measured on the other files: it is written last.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Output(ABC):
     always: bool = False
     unasked: bool = True
     needs: tuple[str, ...] = ()
+    tells_joints: bool = False
 
     @abstractmethod
     def write(self, folder: Path, delivery: Delivery) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
 from cadpanel.delivery.schedule.csv_text import Cell, Row
-from cadpanel.delivery.source_date import source_date
+from cadpanel.delivery.source_date import archive_date, source_date
 from cadpanel.errors import DeliveryError
 
 # What no workbook can hold, and what no name of a sheet can.
@@ -17,7 +17,6 @@ _NOT_SHOWN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]"
 _NOT_IN_A_NAME = re.compile(r"[\\*?:/\[\]]")
 _LONGEST_NAME = 31
 _WRITTEN = re.compile(rb"(<dcterms:(created|modified)[^>]*>)[^<]*")
-_FIRST_YEAR = 1980  # of dates in an archive
 _WIDTH = 14
 
 
@@ -78,8 +77,7 @@ def _shown(text: str) -> str:
 
 def _dated(stream: io.BytesIO) -> bytes:
     """The same archive with the date of the environment instead of the time of day."""
-    date = source_date()
-    moment = (max(date.year, _FIRST_YEAR), date.month, date.day, date.hour, date.minute, date.second)
+    date, moment = source_date(), archive_date()
     out = io.BytesIO()
     with ZipFile(stream) as written, ZipFile(out, "w", ZIP_DEFLATED) as dated:
         for name in written.namelist():

@@ -1,0 +1,59 @@
+"""Archives that keep shapes as text, as FreeCAD's documents do: read through the kernel and measured."""
+
+from __future__ import annotations
+
+import zlib
+from pathlib import Path
+from zipfile import BadZipFile, ZipFile
+
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_SOLID
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
+
+from cadpanel.brep.building.mass_properties import areas_and_centroids
+from cadpanel.brep.building.sheet import volume_of
+from cadpanel.brep.kernel.shapes import faces_of, shape_of_text, shapes_of
+from cadpanel.brep.proof.inspection import vertices_of
+from cadpanel.brep.proof.kept_facts import KeptFacts
+from cadpanel.errors import DeliveryError
+
+SHAPE_ENDING = ".brp"
+
+
+def kept_facts(path: Path) -> dict[str, KeptFacts]:
+    """Facts of every shape in an archive, by the names of their files.
+
+    Raises:
+        DeliveryError: it cannot be read, or a shape in it is none.
+    """
+    try:
+        with ZipFile(path) as archive:
+            texts = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be read: {error.strerror or error}.") from error
+    except (BadZipFile, zlib.error) as error:
+        raise DeliveryError(f"'{path}' cannot be read: it is damaged ({error}); write the delivery again.") from error
+    return {name: _measured(path, name, text) for name, text in texts.items()}
+
+
+def _measured(path: Path, name: str, text: bytes) -> KeptFacts:
+    shape = shape_of_text(text)
+    if shape.IsNull():
+        raise DeliveryError(f"'{path}' cannot be read: the shape '{name}' in it is damaged; write the delivery again.")
+    solids = len(shapes_of(shape, TopAbs_SOLID))
+    faces = faces_of(shape)
+    return KeptFacts(
+        solids=solids,
+        faces=len(faces),
+        edges=_edges(shape),
+        volume=volume_of(shape) if solids else 0.0,
+        area=0.0 if solids else float(areas_and_centroids(faces)[0].sum()),
+        vertices=vertices_of(shape),
+    )
+
+
+def _edges(shape: TopoDS_Shape) -> int:
+    known = TopTools_IndexedMapOfShape()
+    TopExp.MapShapes_s(shape, TopAbs_EDGE, known)
+    return int(known.Extent())

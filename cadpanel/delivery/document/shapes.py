@@ -1,0 +1,47 @@
+"""The shapes of a document, as the files that its archive keeps: solids, skins, flat patterns and seams."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from cadpanel.arrays import Array
+from cadpanel.brep.building.drawn import edges_along, flat_face
+from cadpanel.brep.kernel.shapes import brep_text
+from cadpanel.delivery.contents import Contents
+from cadpanel.delivery.document.tree import drawn_seams, flat_file, panel_file, seam_file, skin_file
+from cadpanel.delivery.drawing.entities import Contour, Drawing
+from cadpanel.delivery.drawing.layout import in_rows
+from cadpanel.delivery.drawing.part import bend_lines, contours
+from cadpanel.delivery.sheets import PanelSheet
+
+
+def shape_files(contents: Contents, panels: Sequence[PanelSheet]) -> Iterator[tuple[str, bytes]]:
+    """Name and text of every file, in the order in which objects of the document name them.
+
+    Args:
+        contents: what the document tells of.
+        panels: the sheets of the panels in it, as they were built.
+    """
+    for place, panel in enumerate(panels):
+        yield panel_file(place), brep_text(panel.solid)
+    places = {panel.shape.name: place for place, panel in enumerate(panels)}
+    for number, seam in enumerate(drawn_seams(contents)):
+        own = [(places[name], edge) for name, edge in zip(seam.panels, seam.edges, strict=True) if name in places]
+        rows = [(panels[place].skin, panels[place].shape.edge(edge).corners) for place, edge in own]
+        yield seam_file(number), brep_text(edges_along(rows))
+    for place, panel in enumerate(panels):
+        yield skin_file(place), brep_text(panel.skin)
+    for place, (contour, lines) in enumerate(laid_out(contents)):
+        yield flat_file(place), brep_text(flat_face(contour, lines))
+
+
+def laid_out(contents: Contents) -> list[tuple[Array, Array]]:
+    """The contour (v, 3) of each flat pattern and its bend lines (m, 2, 2), in rows from the top."""
+    chains = contours(contents.parts, contents.shop.chord)
+    drawings: list[Drawing] = [(Contour("", chain),) for chain in chains]
+    return [
+        (chain + np.append(shift, 0.0), bend_lines(part) + shift)
+        for chain, part, shift in zip(chains, contents.parts, in_rows(drawings), strict=True)
+    ]

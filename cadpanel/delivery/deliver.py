@@ -95,6 +95,7 @@ def fill_delivery(
         parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
         panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
         seams = seam_records(result.reference, result.measures, built.joints)
+        told = summary(result.measures, result.local, result.settings)
         built_at = time.perf_counter()
         own = [place for place, panel in enumerate(panels) if panel.name in chosen]
         delivery = Delivery(
@@ -107,6 +108,8 @@ def fill_delivery(
             parts=tuple(parts[place] for place in own),
             joint=sheet.joint,
             origin=result.reference.origin,
+            summary=told,
+            result=result,
         )
         _write(folder, delivery, outputs, tell, helper)
         written_at = time.perf_counter()
@@ -122,7 +125,7 @@ def fill_delivery(
         panels=panels,
         seams=proved.seams,
         features=dict(Counter(panel.feature for panel in panels)),
-        summary=summary(result.measures, result.local, result.settings),
+        summary=told,
         baselines=baselines,
         certificate=proved.certificate,
         timing=TimingModel(

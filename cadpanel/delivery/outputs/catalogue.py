@@ -7,6 +7,7 @@ from importlib.util import find_spec
 
 from cadpanel.delivery.outputs.flat_dxf import FlatDxf
 from cadpanel.delivery.outputs.output import Output
+from cadpanel.delivery.outputs.report_html import ReportHtml
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
 from cadpanel.delivery.outputs.setting_out import SettingOut
@@ -20,6 +21,7 @@ OUTPUTS: tuple[Output, ...] = (
     Schedule(),
     SettingOut(),
     ScheduleXlsx(),
+    ReportHtml(),
 )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cadpanel.delivery.outputs.output import Delivery
 from cadpanel.delivery.outputs.report_html import PAGE, ReportHtml
+from cadpanel.delivery.page.scene import Scene, scene_of
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.from_fit import panel_records, seam_records, with_flat_parts
 from cadpanel.delivery.records.summary import summary
@@ -28,9 +29,23 @@ def renamed(result: FitResult, names: tuple[str, ...] = NAMES) -> FitResult:
 
 
 @cache
+def strange() -> FitResult:
+    """The fit of the strip under these names."""
+    return renamed(fitted())
+
+
+@cache
+def scene() -> Scene:
+    """What the page shows."""
+    return scene_of(
+        strange(), [panel.shape for panel in delivery().panels], [panel.other for panel in delivery().panels]
+    )
+
+
+@cache
 def delivery() -> Delivery:
     """What the page of the strip is made of."""
-    result, sheet, shop = renamed(fitted()), SheetSettings(), ShopSettings()
+    result, sheet, shop = strange(), SheetSettings(), ShopSettings()
     built = build_panels(result.shapes, sheet, result.reference.seams)
     parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
     return Delivery(

@@ -30,6 +30,8 @@ def packed(scene: Scene) -> Packed:
         panels.append(
             {
                 "name": panel.name,
+                "feature": panel.feature,
+                "radius": panel.radius,
                 "topology": topologies.setdefault(triangles, len(topologies)),
                 "points": _boxed(panel.points),
                 "other": _boxed(panel.other),
@@ -57,6 +59,8 @@ def unpacked(found: Packed) -> Scene:
         panels=tuple(
             PanelScene(
                 name=panel["name"],
+                feature=panel["feature"],
+                radius=panel["radius"],
                 points=_unboxed(panel["points"], 3),
                 other=_unboxed(panel["other"], 3),
                 triangles=topologies[panel["topology"]],

@@ -10,6 +10,8 @@ from scipy.spatial import cKDTree
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.page.ghosts import Ghost, ghost, outline_of
+from cadpanel.delivery.records.from_shape import patch_models
+from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel
 from cadpanel.fitting.measures.deviation import deviations
 from cadpanel.fitting.measures.profiles import SeamProfile, seam_profiles
 from cadpanel.fitting.result import FitResult
@@ -28,6 +30,8 @@ class PanelScene:
 
     Attributes:
         name: its name.
+        feature: name of its shape feature.
+        radius: smallest radius of its skin, mm; None where it is flat.
         points: (v, 3) vertices of the skin, mm.
         other: (v, 3) the same ones on the sheet's other face.
         triangles: (f, 3) counterclockwise seen from outside.
@@ -36,6 +40,8 @@ class PanelScene:
     """
 
     name: str
+    feature: str
+    radius: float | None
     points: Array
     other: Array
     triangles: IntArray
@@ -76,6 +82,8 @@ def scene_of(result: FitResult, skins: Sequence[Panel], others: Sequence[Panel])
         panels.append(
             PanelScene(
                 name=skin.name,
+                feature=skin.feature,
+                radius=_smallest_radius(skin),
                 points=mesh.points,
                 other=skin_mesh(other).points,
                 triangles=mesh.triangles,
@@ -96,6 +104,11 @@ def _seams(result: FitResult, shown: set[int]) -> tuple[SeamScene, ...]:
         for seam, profile in zip(reference.seams, found, strict=True)
         if shown & set(seam.panels)
     )
+
+
+def _smallest_radius(skin: Panel) -> float | None:
+    rounds = [patch for patch in patch_models(skin) if isinstance(patch, ConePatchModel | CylinderPatchModel)]
+    return min((patch.radius_min for patch in rounds), default=None)
 
 
 def _measured(result: FitResult, shown: Sequence[int]) -> list[tuple[Array, Array]]:

@@ -11,16 +11,17 @@ function bytes(text) {
   return found;
 }
 
+// The lower byte comes first, as on every machine that runs a browser.
 function wholes(text) {
-  const raw = bytes(text);
-  const view = new DataView(raw.buffer);
-  return Uint16Array.from({ length: raw.length / 2 }, (_, i) => view.getUint16(2 * i, true));
+  return new Uint16Array(bytes(text).buffer);
 }
 
 function unboxed(box) {
   const counts = wholes(box.data);
   const columns = box.low.length;
-  return Float64Array.from(counts, (count, i) => box.low[i % columns] + count * box.step[i % columns]);
+  const found = new Float64Array(counts.length);
+  for (let i = 0; i < counts.length; i += 1) found[i] = box.low[i % columns] + counts[i] * box.step[i % columns];
+  return found;
 }
 
 // Edges that one triangle only has: the border of a skin.

@@ -289,11 +289,25 @@ class Stage {
     const sum = [0, 1, 2].map((x) => this.model.panels.reduce((all, panel) => all + panel.normal[x], 0));
     const area = this.model.panels.reduce((all, panel) => all + Math.hypot(...panel.normal), 0);
     const outward = new THREE.Vector3(...sum).divideScalar(area || 1);
-    // Seen from outside where a skin has one, a little from above; a roof or a closed form from the south-west.
+    // Seen from outside where a skin has one, a little from above; a roof or a closed form along its short side.
     const upright = Math.hypot(outward.x, outward.y) > 0.25;
-    const way = upright ? outward.normalize() : new THREE.Vector3(-0.4, -0.8, Math.max(outward.z, 0));
+    const [east, north] = upright ? [] : this.shortWay();
+    const way = upright ? outward.normalize() : new THREE.Vector3(east, north, Math.max(outward.z, 0));
     way.z = Math.max(way.z, 0) + 0.35;
     this.look(this.model.panels, this.model.box.middle, way);
+  }
+
+  // The direction in plan in which the panels reach less far, from the south; from the south-west where there is none.
+  shortWay() {
+    const [xx, xy, yy] = this.model.panels.reduce(([a, b, c], { box }) => {
+      const [x, y] = [0, 1].map((k) => box.middle[k] - this.model.box.middle[k]);
+      return [a + x * x, b + x * y, c + y * y];
+    }, [0, 0, 0]);
+    const apart = Math.hypot(xx - yy, 2 * xy);
+    if (apart < 0.3 * (xx + yy)) return [-0.5, -0.85];
+    const long = 0.5 * Math.atan2(2 * xy, xx - yy);
+    const side = Math.cos(long) > 0 ? -1 : 1;
+    return [-side * Math.sin(long), side * Math.cos(long)];
   }
 
   // Some panels as large as the picture takes them, the middle of it at a place, seen from a way.

@@ -48,7 +48,7 @@ function showDetails(place, thing, model, choose) {
     return;
   }
   const seam = Boolean(thing.profile);
-  const kind = seam ? `Seam, ${thing.edges.join(" to ")}` : thing.feature;
+  const kind = seam ? ["Seam", ...(thing.edges.length ? [thing.edges.join(" to ")] : [])].join(", ") : thing.feature;
   place.replaceChildren(
     element("div", { class: "head" },
       element("div", {}, element("h2", {}, thing.name), element("p", { class: "kind" }, kind)),

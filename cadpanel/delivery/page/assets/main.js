@@ -90,9 +90,10 @@ function choose(thing, near = true) {
 function showHead() {
   const { summary, sheet } = model;
   get("title").textContent = model.title;
-  const joint = sheet.joint > 0 ? `, joints of ${Number(sheet.joint)} mm` : "";
+  const joint = sheet && sheet.joint > 0 ? `, joints of ${Number(sheet.joint)} mm` : "";
+  const thick = sheet ? `, sheet of ${Number(sheet.thickness)} mm${joint}` : "";
   get("subtitle").textContent =
-    `${counted(model.panels.length, "panel", "panels")}, ${counted(model.seams.length, "seam", "seams")}, sheet of ${Number(sheet.thickness)} mm${joint}`;
+    `${counted(model.panels.length, "panel", "panels")}, ${counted(model.seams.length, "seam", "seams")}${thick}`;
   const verdict = get("verdict");
   verdict.hidden = summary === null;
   if (summary === null) return;

@@ -9,7 +9,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.near import did_you_mean
+from cadpanel.near import near_names
 from cadpanel.reference.settings import ReferenceSettings
 
 _SETTINGS = {
@@ -37,4 +37,4 @@ def check_keywords(step: str, given: Iterable[str]) -> None:
         home = next((other for other, names in known.items() if keyword in names), None)
         if home is not None:
             raise SettingsError(f"'{keyword}' is no setting of {step}(): give it to {home}()")
-        raise SettingsError(f"{step}() knows no setting '{keyword}'; {did_you_mean(keyword, known[step])}")
+        raise SettingsError(f"{step}() knows no setting '{keyword}'; {near_names(keyword, known[step])}")

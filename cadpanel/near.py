@@ -8,13 +8,13 @@ from difflib import get_close_matches
 _MOST, _LIKE = 3, 0.6
 
 
-def did_you_mean(name: str, names: Iterable[str]) -> str:
-    """Which of the names may have been meant, as the end of a sentence; all of them where none is like it."""
+def near_names(name: str, names: Iterable[str]) -> str:
+    """Which of the names may be meant, as the end of a sentence; the first of them where none is like it."""
     known = list(names)
     folded = {one.casefold(): one for one in reversed(known)}
     like = [folded[one] for one in get_close_matches(name.casefold(), folded, _MOST, _LIKE)]
     if like:
-        return f"did you mean {' or '.join(_quoted(like))}?"
+        return f"perhaps {' or '.join(_quoted(like))} is meant"
     shown = _quoted(known[:_MOST])
     more = f" and {len(known) - _MOST} more" if len(known) > _MOST else ""
     return f"there is {', '.join(shown)}{more}" if shown else "there is none at all"

@@ -12,10 +12,10 @@ from tests.delivered import fitted, strip
 @pytest.mark.parametrize(
     ("step", "keyword", "said"),
     [
-        ("fit", "gap_tolerence", r"fit\(\) knows no setting 'gap_tolerence'; did you mean 'gap_tolerance'"),
+        ("fit", "gap_tolerence", r"fit\(\) knows no setting 'gap_tolerence'; perhaps 'gap_tolerance'"),
         ("fit", "divide", r"'divide' is no setting of fit\(\): give it to read\(\)"),
         ("read", "thickness", r"'thickness' is no setting of read\(\): give it to deliver\(\)"),
-        ("deliver", "output", r"deliver\(\) knows no setting 'output'; did you mean 'outputs'"),
+        ("deliver", "output", r"deliver\(\) knows no setting 'output'; perhaps 'outputs'"),
     ],
 )
 def test_a_wrong_keyword_is_refused_with_the_right_one(step, keyword, said):

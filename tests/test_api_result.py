@@ -12,6 +12,7 @@ import cadpanel as cp
 from cadpanel.delivery.page.html import read_page
 from cadpanel.delivery.page.notebook import fit_numbers
 from cadpanel.delivery.page.numbers import page_numbers
+from cadpanel.delivery.pictures.figure import Picture
 from tests.delivered import fitted
 from tests.pages import NAMES, delivery, scene, strange
 
@@ -30,7 +31,7 @@ def test_panels_are_found_by_name_counted_and_gone_through():
 
 @pytest.mark.parametrize(
     ("name", "said"),
-    [("n 2", "did you mean 'N 2'"), ("N2", "did you mean 'N"), ("roof", "there is 'N 1', 'N 2', 'N 3'")],
+    [("n 2", "perhaps 'N 2'"), ("N2", "perhaps 'N"), ("roof", "there is 'N 1', 'N 2', 'N 3'")],
 )
 def test_a_name_that_there_is_not_is_refused_with_what_may_have_been_meant(name, said):
     for of in (result(), result().reference):
@@ -57,7 +58,9 @@ def test_a_table_has_a_row_for_each_panel(monkeypatch):
 
 def test_pictures_are_figures():
     found = result()
-    assert found.plot_deviation("top").axes
+    picture = found.plot_deviation("top")
+    assert isinstance(picture, Picture)
+    assert picture._repr_png_().startswith(b"\x89PNG")
     assert len(found.plot_seam("N 2", "N 1").axes) == 4
     assert found.plot_flat("N 1").axes[0].get_title().startswith("N 1")
     with pytest.raises(KeyError, match="'N 1' and 'N 3' do not meet"):

@@ -13,6 +13,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from cadpanel.cli.compare import compare
+from cadpanel.cli.explain import explain
 from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.inspect import inspect
@@ -28,7 +29,7 @@ EXIT_REFUSED = 2
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
-COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, view, features, inspect)
+COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, view, features, inspect, explain)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
 app = typer.Typer(name="cadpanel", add_completion=False, pretty_exceptions_enable=False)

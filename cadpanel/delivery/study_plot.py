@@ -43,9 +43,9 @@ def draw_study(study: StudyModel) -> Figure:
 
     Points that hold what was asked are full, others hollow; the knee of each line is a star.
     """
-    from matplotlib.figure import Figure
+    from cadpanel.delivery.pictures.figure import Picture
 
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = Picture(figsize=_SIZE, layout="constrained")
     axes = figure.subplots(1, 2)
     for ax, what, heading in zip(
         axes, ("rms_deviation", "max_deviation"), ("RMS deviation, mm", "largest deviation, mm"), strict=True

@@ -14,7 +14,7 @@ from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
-from cadpanel.near import did_you_mean
+from cadpanel.near import near_names
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.corner_drift import DriftAlong
@@ -95,7 +95,7 @@ class FitResult:
         for shape in self.shapes:
             if shape.name == name:
                 return shape
-        raise KeyError(f"there is no panel '{name}'; {did_you_mean(name, [shape.name for shape in self.shapes])}")
+        raise KeyError(f"there is no panel '{name}'; {near_names(name, [shape.name for shape in self.shapes])}")
 
     def __getitem__(self, name: str) -> Panel:
         return self.shape(name)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.near import did_you_mean
+from cadpanel.near import near_names
 from cadpanel.reference.settings import ReferenceSettings
 
 
@@ -160,7 +160,7 @@ class Reference:
         for panel in self.panels:
             if panel.name == name:
                 return panel
-        raise KeyError(f"there is no panel '{name}'; {did_you_mean(name, [panel.name for panel in self.panels])}")
+        raise KeyError(f"there is no panel '{name}'; {near_names(name, [panel.name for panel in self.panels])}")
 
     def __len__(self) -> int:
         return len(self.panels)

@@ -34,6 +34,7 @@ def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
         "panels.step",
+        "report.html",
         "report.json",
         "schedule.csv",
         "setting_out.csv",
@@ -93,6 +94,9 @@ def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, li
         "tmp",
         "Written",
         "4 drawings",
+        "Worst panel: '",
+        "Worst seam: '",
+        "Look at it: cadpanel view",
     ):
         assert words in answer.out
     assert answer.err == ""

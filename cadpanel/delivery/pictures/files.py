@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cadpanel.delivery.page.html import read_page
 from cadpanel.delivery.page.packing import unpacked
 from cadpanel.delivery.page.scene import Scene
-from cadpanel.delivery.pictures.colours import Colour
+from cadpanel.delivery.pictures.colours import Colour, require_matplotlib
 from cadpanel.delivery.pictures.model import draw_model
 from cadpanel.delivery.pictures.views import View
 from cadpanel.errors import DeliveryError
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def scene_of_page(page: Path) -> Scene:
@@ -38,15 +33,11 @@ def write_picture(page: Path, path: Path, color: Colour, view: View) -> None:
         SettingsError: matplotlib is missing, or there is no such colour or view.
         DeliveryError: the page cannot be read, or the file cannot be written.
     """
+    require_matplotlib()
+    from cadpanel.delivery.pictures.figure import png_bytes
+
     data = png_bytes(draw_model(scene_of_page(page), color, view))
     try:
         path.write_bytes(data)
     except OSError as error:
         raise DeliveryError(f"'{path}' cannot be written: {error.strerror or error}.") from error
-
-
-def png_bytes(figure: Figure) -> bytes:
-    """A figure as a PNG file, no larger than what is drawn; the same figure gives the same bytes."""
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", bbox_inches="tight", metadata={"Software": None})
-    return stream.getvalue()

@@ -23,10 +23,10 @@ def draw_flat(pattern: FlatPattern) -> Figure:
         SettingsError: matplotlib is missing.
     """
     require_matplotlib()
-    from matplotlib.figure import Figure
+    from cadpanel.delivery.pictures.figure import Picture
 
     outline, bends = flat_lines(pattern)
-    figure = Figure(figsize=_SIZE, dpi=_DOTS, layout="constrained")
+    figure = Picture(figsize=_SIZE, dpi=_DOTS, layout="constrained")
     axes = figure.add_subplot()
     axes.fill(*outline.T, facecolor="#eef3f8", edgecolor="#1c2733", linewidth=1.2)
     for line in bends:

@@ -77,7 +77,8 @@ def draw_model(scene: Scene, color: Colour = "deviation", view: View = "outside"
     if view not in VIEWS:
         raise SettingsError(f"nothing can be seen from '{view}'; choose from {', '.join(VIEWS)}")
     from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
+
+    from cadpanel.delivery.pictures.figure import Picture
 
     frame = _frame(_outside(scene) if view == "outside" else np.array(_WAYS[view], dtype=np.float64))
     scale = _scale(scene, color)
@@ -87,7 +88,7 @@ def draw_model(scene: Scene, color: Colour = "deviation", view: View = "outside"
         np.concatenate([getattr(part, what) for part in parts]) for what in ("corners", "depth", "colours")
     )
     order = np.argsort(depth, kind="stable")
-    figure = Figure(figsize=_SIZE, dpi=_DOTS, layout="constrained")
+    figure = Picture(figsize=_SIZE, dpi=_DOTS, layout="constrained")
     axes = figure.add_subplot()
     axes.add_collection(
         PolyCollection(list(corners[order]), facecolors=colours[order], edgecolors=colours[order], linewidths=0.3)

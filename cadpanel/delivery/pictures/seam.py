@@ -22,7 +22,7 @@ def draw_seam(seam: SeamScene) -> Figure:
         SettingsError: matplotlib is missing.
     """
     require_matplotlib()
-    from matplotlib.figure import Figure
+    from cadpanel.delivery.pictures.figure import Picture
 
     profile = seam.profile
     rows = (
@@ -31,7 +31,7 @@ def draw_seam(seam: SeamScene) -> Figure:
         ("step, mm", profile.step),
         ("kink, degrees", np.degrees(profile.kink)),
     )
-    figure = Figure(figsize=_SIZE, dpi=_DOTS, layout="constrained")
+    figure = Picture(figsize=_SIZE, dpi=_DOTS, layout="constrained")
     for axes, (label, values) in zip(figure.subplots(2, 2, sharex=True).flat, rows, strict=True):
         axes.plot(profile.along, values, color=ACCENT, linewidth=1.6)
         axes.fill_between(profile.along, values, color=ACCENT, alpha=0.12, linewidth=0.0)

@@ -9,7 +9,8 @@ from matplotlib.image import imread
 
 from cadpanel.delivery.pictures import colours
 from cadpanel.delivery.pictures.colours import COLOURS, rounded_up
-from cadpanel.delivery.pictures.files import png_bytes, scene_of_page, write_picture
+from cadpanel.delivery.pictures.figure import png_bytes
+from cadpanel.delivery.pictures.files import scene_of_page, write_picture
 from cadpanel.delivery.pictures.flat import draw_flat
 from cadpanel.delivery.pictures.model import draw_model, feature_colours
 from cadpanel.delivery.pictures.seam import draw_seam

@@ -10,7 +10,8 @@ from cadpanel.delivery.records.report import PanelModel, SeamModel, SummaryModel
 
 Numbers = dict[str, Any]
 """What JSON can hold."""
-_DIGITS = 6
+# More than are shown: a number that is rounded twice may end up on the wrong side.
+_DIGITS = 9
 _OF_SUMMARY = (
     "max_corner_gap",
     "max_seam_gap",
@@ -91,5 +92,5 @@ def _seam(seam: SeamModel) -> Numbers:
 
 
 def _rounded(value: float) -> float:
-    """What people can read of a number; the report has all its digits."""
+    """A number without the digits that nobody sees; the report has all of them."""
     return float(f"{value:.{_DIGITS}g}")

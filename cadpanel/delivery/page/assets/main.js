@@ -43,7 +43,8 @@ function showLegend(mode) {
       const at = from + share * (to - from);
       return mode.exp ? digits(Math.exp(at), 0) : String(Number(at.toPrecision(3))).replace("-", "\u2212");
     };
-    parts.push(bar, element("div", { class: "ticks" }, ...[0, 0.5, 1].map((share) => element("span", {}, value(share)))));
+    const ticks = [...new Set([0, 0.5, 1].map(value))].map((words) => element("span", {}, words));
+    parts.push(bar, element("div", { class: "ticks" }, ...ticks));
   }
   if (mode.keys) {
     parts.push(element("div", { class: "keys" }, ...mode.keys.map(([colour, words]) => {
@@ -57,15 +58,12 @@ function showLegend(mode) {
   legend.setAttribute("aria-label", `Colours: ${legend.textContent}`);
 }
 
+// A browser without WebGL still has all numbers.
 function stageOf() {
-  try {
-    return new Stage(model, get("canvas"));
-  } catch (error) {
-    // A browser without WebGL still has all numbers.
-    get("nothing").hidden = false;
-    get("canvas").hidden = true;
-    return null;
-  }
+  if (document.createElement("canvas").getContext("webgl2")) return new Stage(model, get("canvas"));
+  get("nothing").hidden = false;
+  get("canvas").hidden = true;
+  return null;
 }
 
 const stage = stageOf();

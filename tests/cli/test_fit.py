@@ -398,7 +398,7 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out, xlsx, html."),
+        ("--outputs flat", "There is no output 'flat'; choose from step, flats, schedule, setting-out, html, xlsx."),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),

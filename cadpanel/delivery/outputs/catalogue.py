@@ -20,8 +20,8 @@ OUTPUTS: tuple[Output, ...] = (
     FlatDxf(),
     Schedule(),
     SettingOut(),
-    ScheduleXlsx(),
     ReportHtml(),
+    ScheduleXlsx(),
 )
 
 

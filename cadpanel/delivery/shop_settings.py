@@ -47,8 +47,8 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "outputs"),
             metavar="NAME,...",
-            help="What to write besides report.json: step, flats, schedule, setting-out, html, xlsx; all but the last if "
-            "not given.",
+            help="What to write besides report.json: step, flats, schedule, setting-out, html, xlsx; all but the last "
+            "if not given.",
         ),
     )
     only: str | Sequence[str] = setting(

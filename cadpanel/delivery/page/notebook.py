@@ -38,7 +38,6 @@ def fit_numbers(result: FitResult, scene: Scene) -> dict[str, Any]:
             "feature": shape.feature,
             "rms": float(m.rms_deviation[place]),
             "deviation": float(m.max_deviation[place]),
-            "hausdorff": float(m.hausdorff[place]),
             "drift": float(m.drift[place]),
             "area": shape.area(),
             "mass": None,
@@ -53,7 +52,6 @@ def fit_numbers(result: FitResult, scene: Scene) -> dict[str, Any]:
         {
             "panels": list(shown.panels),
             "edges": [],
-            "corner_gap": float(m.corner_gaps[place].max(initial=0.0)),
             "gap": float(m.seam_gap[place]),
             "width": float(m.seam_width[place]),
             "step": float(m.seam_step[place]),

@@ -6,44 +6,25 @@ from typing import Any
 
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel
-from cadpanel.delivery.records.report import PanelModel, SeamModel, SummaryModel
+from cadpanel.delivery.records.report import PanelModel, SeamModel
 
 Numbers = dict[str, Any]
 """What JSON can hold."""
 # More than are shown: a number that is rounded twice may end up on the wrong side.
 _DIGITS = 9
-_OF_SUMMARY = (
-    "max_corner_gap",
-    "max_seam_gap",
-    "max_width",
-    "max_step",
-    "max_shift",
-    "max_kink",
-    "rms_deviation",
-    "max_deviation",
-    "hausdorff",
-    "max_corner_drift",
-)
 
 
 def page_numbers(contents: Contents) -> Numbers:
-    """Title, sheet, summary, the panels that are delivered and all seams of theirs."""
+    """Title, sheet, verdict, the panels that are delivered and all seams of theirs."""
     shown = {record.name for record in contents.records}
-    sheet, shop = contents.sheet, contents.shop
+    sheet = contents.sheet
     return {
         "title": contents.title,
         "sheet": {"thickness": sheet.thickness, "joint": sheet.joint, "skin_side": sheet.skin_side},
-        "density": shop.density,
-        "origin": list(contents.origin),
-        "summary": None if contents.summary is None else _summary(contents.summary),
+        "summary": None if contents.summary is None else {"tolerance_met": contents.summary.tolerance_met},
         "panels": [_panel(record) for record in contents.records],
         "seams": [_seam(seam) for seam in contents.seams if shown & set(seam.panels)],
     }
-
-
-def _summary(summary: SummaryModel) -> Numbers:
-    found: Numbers = {key: _rounded(getattr(summary, key)) for key in _OF_SUMMARY}
-    return {**found, "tolerance_met": summary.tolerance_met}
 
 
 def _panel(record: PanelModel) -> Numbers:
@@ -53,7 +34,6 @@ def _panel(record: PanelModel) -> Numbers:
         "feature": record.feature,
         "rms": _rounded(record.rms_deviation),
         "deviation": _rounded(record.max_deviation),
-        "hausdorff": _rounded(record.hausdorff),
         "drift": _rounded(record.max_corner_drift),
         "area": _rounded(record.area),
         "mass": None if record.mass is None else _rounded(record.mass),
@@ -82,7 +62,6 @@ def _seam(seam: SeamModel) -> Numbers:
     return {
         "panels": list(seam.panels),
         "edges": list(seam.edges),
-        "corner_gap": _rounded(seam.max_corner_gap),
         "gap": _rounded(seam.max_seam_gap),
         "width": _rounded(seam.width),
         "step": _rounded(seam.step),

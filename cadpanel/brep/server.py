@@ -15,6 +15,7 @@ from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
 from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
 from cadpanel.brep.files.model import Model
+from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
 from cadpanel.brep.proof.expected import Sheet
@@ -116,7 +117,10 @@ def _done(request: Request, stages: _Stages) -> object:
 def serve(requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer one request after the other until none comes."""
     while header := requests.read(HEADER.size):
-        answers.write(framed(answer(pickle.loads(requests.read(HEADER.unpack(header)[0])), answers)))
+        request = pickle.loads(requests.read(HEADER.unpack(header)[0]))
+        with ends_with_whoever_asked(requests.fileno()):
+            found = answer(request, answers)
+        answers.write(framed(found))
         answers.flush()
 
 

@@ -27,6 +27,7 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, unroll, write_step
+    from cadpanel.api_result import FitResult
     from cadpanel.api_studies import fewest_panels, study
     from cadpanel.atomic.cone import fit_cone
     from cadpanel.atomic.cylinder import fit_cylinder
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from cadpanel.features.patches import Cone, Cylinder, Plane
     from cadpanel.fitting.bends.asked import Blend
     from cadpanel.fitting.measures.fit import Measures
-    from cadpanel.fitting.result import FitResult
     from cadpanel.fitting.settings import FitSettings, Weights
     from cadpanel.geometry.patches import ConePatch, PlanePatch
     from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -102,6 +102,7 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "unroll", "write_step"),
+        "api_result": ("FitResult",),
         "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
@@ -115,7 +116,6 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "atomic.result": ("ConeFit", "CylinderFit", "PlaneFit"),
         "fitting.bends.asked": ("Blend",),
         "fitting.measures.fit": ("Measures",),
-        "fitting.result": ("FitResult",),
         "fitting.settings": ("FitSettings", "Weights"),
         "geometry.patches": ("ConePatch", "PlanePatch"),
         "geometry.shape": ("PanelShape", "PolygonShape"),

@@ -12,6 +12,8 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
+from cadpanel import api_result
+from cadpanel.api_keywords import check_keywords
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
@@ -79,6 +81,7 @@ def inspect(
 
 def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> ReferenceSettings:
     _require(settings, ReferenceSettings | None, "how a file is read is told by ReferenceSettings")
+    check_keywords("read", changes)
     # The settings bring every form that a keyword may have into one.
     given = {field.name: getattr(settings, field.name) for field in fields(ReferenceSettings)} if settings else {}
     return ReferenceSettings(**cast("dict[str, Any]", {**given, **changes}))
@@ -86,6 +89,7 @@ def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> 
 
 def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
     _require(settings, FitSettings | None, "how panels are fitted is told by FitSettings")
+    check_keywords("fit", changes)
     return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
 
 
@@ -100,17 +104,17 @@ def _require(given: object, kind: Any, what: str) -> None:
 
 
 def fit(
-    reference: Reference,
+    reference: Reference | str | Path,
     settings: FitSettings | None = None,
     *,
     progress: Progress | None = None,
     time_limit: float | None = None,
     **changes: Unpack[FitKeywords],
-) -> FitResult:
+) -> api_result.FitResult:
     """Fit all panels of a reference.
 
     Args:
-        reference: what is to be approximated.
+        reference: what is to be approximated: as `read` gives it, or a file that is read as it is.
         settings: how; by default concurrent plane-cone-plane, steps of at most 3 mm, seams within 3 degrees of the
             drawn ones.
         progress: told the method, the step, the largest excess over a tolerance (1 where it holds) and the RMS
@@ -118,16 +122,22 @@ def fit(
         time_limit: seconds after which the fit ends with the best so far, which keeps all limits but perhaps gaps.
         changes: settings to change, for example gap_tolerance=5.0.
 
+    Returns:
+        The panels and their measures; it draws itself, and `result["NW-01"]` is a panel's shape.
+
     Raises:
+        ReferenceFileError: a file cannot be read, or does not hold panels.
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: a setting is out of its range.
     """
-    _require(reference, Reference, "what is fitted is a reference as read() gives it")
+    _require(reference, Reference | str | Path, "what is fitted is a reference as read() gives it, or a file")
     if time_limit is not None:
         _require(time_limit, int | float, "a time limit is a number of seconds")
     if time_limit is not None and not time_limit > 0.0:
         raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
-    return fit_reference(reference, _asked(settings, changes), progress, time_limit=time_limit)
+    asked = _asked(settings, changes)
+    read_in = reference if isinstance(reference, Reference) else read(reference)
+    return api_result.FitResult.of(fit_reference(read_in, asked, progress, time_limit=time_limit))
 
 
 def compare(
@@ -209,6 +219,7 @@ def deliver(
     from cadpanel.delivery.shop_settings import ShopSettings
 
     sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
+    check_keywords("deliver", shop)
     asked = ShopSettings(**cast("dict[str, Any]", shop))
     return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)
 

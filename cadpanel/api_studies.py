@@ -9,6 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
+from cadpanel.api_keywords import check_keywords
+from cadpanel.api_result import FitResult, Study
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.settings import FitKeywords, FitSettings
@@ -16,7 +18,6 @@ from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceSettings
 
 if TYPE_CHECKING:
-    from cadpanel.delivery.records.study import StudyModel
     from cadpanel.studies.fewest_panels import Fewest
     from cadpanel.studies.fewest_panels import Progress as FewestProgress
     from cadpanel.studies.held_points import Progress as StudyProgress
@@ -34,7 +35,7 @@ def study(
     overwrite: bool = False,
     progress: StudyProgress | None = None,
     **changes: Unpack[FitKeywords],
-) -> StudyModel:
+) -> Study:
     """Fit every combination of gaps, features and numbers of panels: what a gap costs, and where it stops to pay.
 
     No row is worse than a fit of its own, nor than what a row with a tighter gap holds already.
@@ -53,7 +54,7 @@ def study(
         changes: settings to change.
 
     Returns:
-        What study.json holds; its `rows` are the points.
+        What study.json holds; its `rows` are the points, and `plot()` draws them.
 
     Raises:
         ReferenceFileError: the file cannot be read or cut.
@@ -82,7 +83,7 @@ def study(
         found = study_record(trade_off(reads, every, progress))
         if folder is not None:
             write_study_files(found, folder)
-    return found
+    return Study.of(found)
 
 
 def _same(reference: Reference) -> Reference:
@@ -127,12 +128,14 @@ def fewest_panels(
     def cut(count: int) -> Reference:
         return read_reference(path, replace(how, divide=count))
 
-    return fewest(cut, _asked(settings, changes), most=most, progress=progress, time_limit=time_limit)
+    found = fewest(cut, _asked(settings, changes), most=most, progress=progress, time_limit=time_limit)
+    return replace(found, result=FitResult.of(found.result))
 
 
 def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
     if not isinstance(settings, FitSettings | None):
         raise SettingsError(f"how panels are fitted is told by FitSettings, not {settings!r:.80}")
+    check_keywords("fit", changes)
     return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
 
 

@@ -29,6 +29,7 @@ FIRST = (
     "fitting/test_every_feature.py",
     "terms/test_adding_a_limit.py",
     "mutation/test_mutation.py",
+    "browser/test_report_page.py",
 )
 """Files with tests of several seconds. Workers of pytest-xdist take tests in their order, and end together only if the
 last ones are short: with the examples near the end one worker had nothing to do for the last fifth of the time."""

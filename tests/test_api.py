@@ -93,9 +93,9 @@ def test_a_polygon_is_built_written_and_handed_over_like_any_other_panel(tmp_pat
     assert [product for product, _ in read_step_shapes(tmp_path / "one.step")] == [shape.name]
 
 
-def test_a_file_name_is_no_reference() -> None:
-    with pytest.raises(cp.SettingsError, match=r"a reference as read\(\) gives it, not 'file.step'"):
-        cp.fit(cast("cp.Reference", "file.step"))
+def test_a_file_that_is_not_there_cannot_be_fitted() -> None:
+    with pytest.raises(cp.ReferenceFileError, match=r"'file\.step' does not exist"):
+        cp.fit("file.step")
 
 
 @pytest.mark.parametrize("thickness", ["3", None, True])
@@ -115,7 +115,7 @@ def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
             lambda of: cp.fit(of, cast(Any, {"seed": 1})),
             "how panels are fitted is told by FitSettings, not {'seed': 1}",
         ),
-        (lambda _: cp.fit(cast(Any, None)), "what is fitted is a reference as read\\(\\) gives it, not None"),
+        (lambda _: cp.fit(cast(Any, None)), "a reference as read\\(\\) gives it, or a file, not None"),
         (lambda _: cp.compare(cast(Any, None)), "what is compared is a reference as read\\(\\) gives it, not None"),
         (
             lambda _: cp.read("a.step", cast(Any, cp.FitSettings())),

@@ -26,6 +26,7 @@ def test_a_study_of_a_reference_has_a_row_for_each_gap_and_feature() -> None:
     study = cp.study(strip(), gaps=[3.0, 1.0, 3.0], features=["plane-cone-plane"], drift_along=0.04)
     assert [(row.gap_tolerance, row.panels, row.divide) for row in study.rows] == [(1.0, 3, None), (3.0, 3, None)]
     assert study.settings.drift_along == 0.04
+    assert len(study.plot().axes) == 2
 
 
 def test_a_study_of_a_file_cuts_it_into_each_number_of_panels(lip: Path) -> None:

@@ -54,6 +54,29 @@ def test_an_example_runs_and_writes_step(example: Path, workplace: Path) -> None
     assert list(out.glob("*.step"))
 
 
+SHOW = """
+import json, sys
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+for cell in json.load(open(sys.argv[1], encoding="utf-8"))["cells"]:
+    if cell["cell_type"] == "code":
+        done = shell.run_cell(cell["source"])
+        done.raise_error()
+        print("shown:", *shell.display_formatter.format(done.result)[0], file=sys.stderr)
+"""
+
+
+@pytest.mark.slow
+def test_the_notebook_runs_and_every_cell_shows_something(workplace: Path) -> None:
+    notebook = ROOT / "examples" / "look_at_a_fit.ipynb"
+    command = [sys.executable, "-c", SHOW, str(notebook)]
+    answer = subprocess.run(command, cwd=workplace, capture_output=True, text=True, timeout=300)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
+    shown = [line.split()[1:] for line in answer.stderr.splitlines() if line.startswith("shown:")]
+    assert len(shown) == 6
+    assert all({"text/html", "image/png"} & set(kinds) for kinds in shown[1:])
+
+
 @pytest.mark.slow
 def test_the_snippets_of_the_readme_run_one_after_the_other(workplace: Path) -> None:
     (workplace / "snippets.py").write_text("\n".join(SNIPPETS), encoding="utf-8")

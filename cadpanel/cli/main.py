@@ -14,12 +14,14 @@ import typer
 
 from cadpanel.cli.compare import compare
 from cadpanel.cli.diff import diff
+from cadpanel.cli.explain import explain
 from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
 from cadpanel.cli.inspect import inspect
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
+from cadpanel.cli.view import view
 from cadpanel.errors import CadpanelError, ProofError, SettingsError
 
 EXIT_NOT_HELD = 1
@@ -29,7 +31,7 @@ EXIT_REFUSED = 2
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
-COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, features, inspect)
+COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, view, features, inspect, explain)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
 app = typer.Typer(name="cadpanel", add_completion=False, pretty_exceptions_enable=False)

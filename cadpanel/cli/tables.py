@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cadpanel.delivery.outputs.report_html import PAGE
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
@@ -117,7 +118,28 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
         out.print(Text(note))
     if len(notes) > _MOST_NOTES:
         out.print(Text(f"{counted(len(notes) - _MOST_NOTES, 'more note')} in {REPORT}."))
+    for line in worst_lines(report):
+        out.print(Text(line))
+    if (folder / PAGE).is_file():
+        out.print(Text(f"Look at it: cadpanel view {folder}"), soft_wrap=True)
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def worst_lines(report: ReportModel) -> list[str]:
+    """Which panel and which seam are worst, and by how much."""
+    panel = max(report.panels, key=lambda one: one.max_deviation)
+    lines = [
+        f"Worst panel: '{panel.name}', up to {length(panel.max_deviation)} mm from the drawing "
+        f"(RMS {length(panel.rms_deviation)} mm)."
+    ]
+    if report.seams:
+        seam = max(report.seams, key=lambda one: one.max_seam_gap)
+        first, second = seam.panels
+        lines.append(
+            f"Worst seam: '{first}' - '{second}', gap up to {length(seam.max_seam_gap)} mm "
+            f"(width {length(seam.width)}, step {length(seam.step)}, shift {length(seam.shift)} mm)."
+        )
+    return lines
 
 
 def _traded(report: ReportModel) -> str:

@@ -10,7 +10,7 @@ from cadpanel.delivery.shop_settings import ShopSettings
 
 if TYPE_CHECKING:  # they take their time to load, and a refusal asks for names only
     from cadpanel.delivery.records.flat_parts import FlatPart
-    from cadpanel.delivery.records.report import PanelModel, SeamModel
+    from cadpanel.delivery.records.report import PanelModel, SeamModel, SummaryModel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +27,7 @@ class Contents:
         joint: clear width between sheets that is promised, mm; None where none is, not even that sheets touch, as in
             reports from before there were joints.
         origin: what has to be added to local coordinates to have the model's, mm.
+        summary: what the whole fit is judged by; None where no file tells of it.
     """
 
     title: str
@@ -37,6 +38,7 @@ class Contents:
     parts: tuple[FlatPart, ...]
     joint: float | None = 0.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    summary: SummaryModel | None = None
 
     @property
     def placed(self) -> tuple[float, float, float]:

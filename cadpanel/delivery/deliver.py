@@ -97,6 +97,7 @@ def fill_delivery(
         parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
         panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
         seams = seam_records(result.reference, result.measures, built.joints)
+        told = summary(result.measures, result.local, result.settings)
         built_at = time.perf_counter()
         own = [place for place, panel in enumerate(panels) if panel.name in chosen]
         delivery = Delivery(
@@ -109,6 +110,8 @@ def fill_delivery(
             parts=tuple(parts[place] for place in own),
             joint=sheet.joint,
             origin=result.reference.origin,
+            summary=told,
+            result=result,
         )
         first, last = _in_turn(outputs)
         _write(folder, delivery, first, _part(tell, 0, len(outputs)), helper)
@@ -129,7 +132,7 @@ def fill_delivery(
         panels=panels,
         seams=proved.seams,
         features=dict(Counter(panel.feature for panel in panels)),
-        summary=summary(result.measures, result.local, result.settings),
+        summary=told,
         baselines=baselines,
         certificate=proved.certificate,
         timing=TimingModel(

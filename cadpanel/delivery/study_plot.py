@@ -12,6 +12,7 @@ from cadpanel.delivery.records.study import StudyModel, StudyRowModel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MISSING = (
     "There is no plot, as matplotlib is not installed: pip install 'cadpanel[plot]', and run it again with --overwrite."
@@ -27,14 +28,24 @@ def can_plot() -> bool:
 
 
 def plot_study(study: StudyModel, paths: Sequence[Path]) -> None:
-    """Draw a study into files, each in the format that its name ends in.
+    """Draw a study into files, each in the format that its name ends in; see `draw_study`."""
+    import matplotlib as mpl
+
+    figure = draw_study(study)
+    with mpl.rc_context({"svg.hashsalt": _SALT}):
+        for path in paths:
+            extra = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+            figure.savefig(path, dpi=_DOTS, metadata=extra)
+
+
+def draw_study(study: StudyModel) -> Figure:
+    """A study as a figure.
 
     Points that hold what was asked are full, others hollow; the knee of each line is a star.
     """
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
+    from cadpanel.delivery.pictures.figure import Picture
 
-    figure = Figure(figsize=_SIZE, layout="constrained")
+    figure = Picture(figsize=_SIZE, layout="constrained")
     axes = figure.subplots(1, 2)
     for ax, what, heading in zip(
         axes, ("rms_deviation", "max_deviation"), ("RMS deviation, mm", "largest deviation, mm"), strict=True
@@ -50,10 +61,7 @@ def plot_study(study: StudyModel, paths: Sequence[Path]) -> None:
         ax.minorticks_off()
     figure.suptitle(f"{study.reference.file}: what a gap costs (full: held; hollow: not held; star: knee)")
     axes[0].legend(fontsize="small")
-    with mpl.rc_context({"svg.hashsalt": _SALT}):
-        for path in paths:
-            extra = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-            figure.savefig(path, dpi=_DOTS, metadata=extra)
+    return figure
 
 
 def _draw(ax: Axes, rows: Sequence[StudyRowModel], what: str) -> None:

@@ -111,6 +111,7 @@ def _contents(report: ReportModel) -> Contents:
         parts=tuple(parts[place] for place in own),
         joint=report.settings.joint,
         origin=report.origin.offset,
+        summary=report.summary,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.measures.verdict import limits_of
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
+from cadpanel.near import near_names
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.corner_drift import DriftAlong
@@ -94,7 +95,23 @@ class FitResult:
         for shape in self.shapes:
             if shape.name == name:
                 return shape
-        raise KeyError(name)
+        raise KeyError(f"there is no panel '{name}'; {near_names(name, [shape.name for shape in self.shapes])}")
+
+    def __getitem__(self, name: str) -> Panel:
+        return self.shape(name)
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+    def __iter__(self) -> Iterator[Panel]:
+        return iter(self.shapes)
+
+    def __repr__(self) -> str:
+        held = "everything held" if self.tolerance_met else "a tolerance missed"
+        return (
+            f"<FitResult of '{self.reference.source}': {len(self)} panels, {held}, "
+            f"gaps up to {self.measures.max_seam_gap:.2f} mm, RMS deviation {self.measures.overall_rms:.2f} mm>"
+        )
 
     def shortfall(self) -> str | None:
         """None if the tolerance and all limits hold, else one sentence on the worst seam or panel, and why it ended."""

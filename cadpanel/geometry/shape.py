@@ -56,6 +56,9 @@ class PanelShape:
     cut_normals: Array
     side_leans: Array = field(default_factory=lambda: np.zeros(2))
 
+    def __repr__(self) -> str:
+        return f"<PanelShape '{self.name}': {self.feature}, {len(self.patches)} patches>"
+
     def corners(self) -> Array:
         """(2, k + 1, 3) where each ruling pierces the cut plane of end 0 and of end 1, mm."""
         to_plane = self.cut_points[:, None, :] - self.points[None, :, :]
@@ -157,6 +160,9 @@ class PolygonShape:
     outline: Array
     normal: Array
     posts: Array | None = None
+
+    def __repr__(self) -> str:
+        return f"<PolygonShape '{self.name}': {self.feature}, {len(self.outline)} corners>"
 
     @property
     def patches(self) -> tuple[Patch, ...]:

@@ -46,7 +46,7 @@ _LEAP = 4.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Places:
+class Places:
     """Places on curves and what was found there.
 
     Attributes:
@@ -66,14 +66,14 @@ class _Places:
     foot: Array
     pace: Array
 
-    def at(self, index: IntArray | BoolArray) -> _Places:
+    def at(self, index: IntArray | BoolArray) -> Places:
         """Some of the places."""
-        return _Places(*(getattr(self, of.name)[..., index] for of in fields(self)))
+        return Places(*(getattr(self, of.name)[..., index] for of in fields(self)))
 
-    def beside(self, others: _Places) -> _Places:
+    def beside(self, others: Places) -> Places:
         """These and then the others."""
         both = ((getattr(self, of.name), getattr(others, of.name)) for of in fields(self))
-        return _Places(*(np.concatenate(pair, axis=-1) for pair in both))
+        return Places(*(np.concatenate(pair, axis=-1) for pair in both))
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +81,8 @@ class _Intervals:
     """Intervals of pieces: their columns (n,), both ends, and how far (4, n) a cubic was seen to be off there."""
 
     column: IntArray
-    low: _Places
-    high: _Places
+    low: Places
+    high: Places
     doubt: Array
 
     @property
@@ -131,10 +131,10 @@ def widest(first: ConicChains, second: ConicChains) -> Widest:
         intervals, values = _halves(on, intervals.at(cut), share[cut])
         for row, found in zip(largest, values, strict=True):
             np.maximum.at(row, seam[cut], found)
-    return Widest(*_told(largest))
+    return Widest(*told(largest))
 
 
-def _told(values: Array) -> Array:
+def told(values: Array) -> Array:
     """(4, ...) distances, angles, widths and steps from their squares, the angles' from those of their chords."""
     found = np.sqrt(values)
     found[_KINK] = 2.0 * np.arcsin(np.minimum(0.5 * found[_KINK], 1.0))
@@ -143,21 +143,21 @@ def _told(values: Array) -> Array:
 
 def _missable(values: Array, flat: Array, share: float) -> Array:
     """(4, s) squares that are larger than those found (4, s) by a share that may be missed."""
-    found = _told(values)
+    found = told(values)
     squares = (found * (1.0 + share) + flat) ** 2
     angles = np.minimum(found[_KINK] * (1.0 + share) + _FLAT, np.pi)
     squares[_KINK] = 4.0 * np.sin(0.5 * angles) ** 2
     return squares
 
 
-def _first_places(on: Stations) -> tuple[IntArray, _Places]:
+def _first_places(on: Stations) -> tuple[IntArray, Places]:
     """The ends (n,) of all first intervals, piece by piece, and their columns."""
     w = np.linspace(0.0, 1.0, INTERVALS + 1)
     column = np.repeat(np.arange(on.chains.curves.shape[1]), len(w))
-    return column, _looked_at(on, column, np.tile(w, on.chains.curves.shape[1]))
+    return column, looked_at(on, column, np.tile(w, on.chains.curves.shape[1]))
 
 
-def _first_intervals(on: Stations, column: IntArray, places: _Places) -> _Intervals:
+def _first_intervals(on: Stations, column: IntArray, places: Places) -> _Intervals:
     """All intervals between neighbouring places of a piece; each pair is doubted by what a cubic over both misses."""
     index = np.arange(len(column)).reshape(-1, INTERVALS + 1)
     low, high = index[:, :-1].ravel(), index[:, 1:].ravel()
@@ -167,7 +167,7 @@ def _first_intervals(on: Stations, column: IntArray, places: _Places) -> _Interv
     return _sided(on, _Intervals(column[low], places.at(low), places.at(high), np.repeat(_FADE * missed, 2, axis=1)))
 
 
-def _looked_at(on: Stations, column: IntArray, w: Array) -> _Places:
+def looked_at(on: Stations, column: IntArray, w: Array) -> Places:
     """What is found at w (n,) of the pieces in the columns (n,)."""
     chain = column // on.chains.pieces
     other = (chain + on.chains.count // 2) % on.chains.count
@@ -176,7 +176,7 @@ def _looked_at(on: Stations, column: IntArray, w: Array) -> _Places:
     return _compared(on.chains, column, w, there, share)
 
 
-def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, share: Array) -> _Places:
+def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, share: Array) -> Places:
     """Places at w (n,) of the pieces in the columns (n,), whose closest points are known: there, at the shares."""
     points, along, _ = followed_twice(np.take(chains.curves, column, axis=1), w)
     away, across, bend = followed_twice(seen_from(np.take(chains.curves, there, axis=1), points), share)
@@ -200,7 +200,7 @@ def _compared(chains: ConicChains, column: IntArray, w: Array, there: IntArray, 
     step = inner(square_on, mean) / np.sqrt(size)
     step_rate = (inner(rate, mean) + inner(square_on, mean_rate)) / np.sqrt(size) - step * inner(mean, mean_rate) / size
     stepping = step * step_rate
-    return _Places(
+    return Places(
         w=w,
         values=np.stack(
             [
@@ -236,7 +236,7 @@ def _sided(on: Stations, of: _Intervals) -> _Intervals:
     )
 
 
-def _on_side(on: Stations, column: IntArray, places: _Places, travel: Array) -> _Places:
+def _on_side(on: Stations, column: IntArray, places: Places, travel: Array) -> Places:
     """Places with their closest points on the pieces into which they travel (n,)."""
     border = np.rint(places.foot)
     first = places.column - places.column % on.chains.pieces
@@ -322,7 +322,7 @@ def _passing(of: _Intervals) -> Array:
 
 def _halves(on: Stations, of: _Intervals, share: Array) -> tuple[_Intervals, Array]:
     """Both parts of every interval, cut at shares (n,) of them, and the values (4, n) there."""
-    cut = _looked_at(on, of.column, of.low.w + share * of.width)
+    cut = looked_at(on, of.column, of.low.w + share * of.width)
     doubt = _FADE * np.maximum(np.abs(_cubic(of, share) - cut.values), _FADE * of.doubt)
     parts = _Intervals(
         np.concatenate([of.column, of.column]),

@@ -6,11 +6,13 @@ All lengths are in millimetres, in the coordinates of the file, less an origin w
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.near import near_names
 from cadpanel.reference.settings import ReferenceSettings
 
 
@@ -85,6 +87,9 @@ class PanelReference:
     edge_normals: tuple[Array, ...]
     turning: Turning | None = None
 
+    def __repr__(self) -> str:
+        return f"<PanelReference '{self.name}': {len(self.points)} samples, {len(self.edges)} edges>"
+
     @property
     def four_sided(self) -> bool:
         """Whether ends can be told from sides."""
@@ -150,3 +155,18 @@ class Reference:
     notes: tuple[str, ...] = ()
     settings: ReferenceSettings = field(default_factory=ReferenceSettings)
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __getitem__(self, name: str) -> PanelReference:
+        for panel in self.panels:
+            if panel.name == name:
+                return panel
+        raise KeyError(f"there is no panel '{name}'; {near_names(name, [panel.name for panel in self.panels])}")
+
+    def __len__(self) -> int:
+        return len(self.panels)
+
+    def __iter__(self) -> Iterator[PanelReference]:
+        return iter(self.panels)
+
+    def __repr__(self) -> str:
+        return f"<Reference '{self.source}': {len(self.panels)} panels, {len(self.seams)} seams>"

@@ -39,6 +39,7 @@ def test_a_delivery_holds_its_files_and_nothing_else(delivered: Path) -> None:
         "panels.FCStd",
         "panels.glb",
         "panels.step",
+        "report.html",
         "report.json",
         "schedule.csv",
         "setting_out.csv",
@@ -98,6 +99,9 @@ def test_the_console_shows_the_table_the_certificate_and_the_folder(run: Run, li
         "tmp",
         "Written",
         "4 drawings",
+        "Worst panel: '",
+        "Worst seam: '",
+        "Look at it: cadpanel view",
     ):
         assert words in answer.out
     assert answer.err == ""
@@ -409,7 +413,8 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
     [
         (
             "--outputs flat",
-            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, xlsx, pdf, ifc, freecad.",
+            "There is no output 'flat'; choose from step, flats, schedule, setting-out, glb, html, xlsx, pdf, ifc, "
+            "freecad.",
         ),
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),

@@ -11,6 +11,7 @@ from cadpanel.delivery.outputs.freecad import FreecadDocument
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.outputs.panels_glb import PanelsGlb
 from cadpanel.delivery.outputs.panels_ifc import PanelsIfc
+from cadpanel.delivery.outputs.report_html import ReportHtml
 from cadpanel.delivery.outputs.schedule import Schedule
 from cadpanel.delivery.outputs.schedule_xlsx import ScheduleXlsx
 from cadpanel.delivery.outputs.setting_out import SettingOut
@@ -24,6 +25,7 @@ OUTPUTS: tuple[Output, ...] = (
     Schedule(),
     SettingOut(),
     PanelsGlb(),
+    ReportHtml(),
     ScheduleXlsx(),
     DrawingsPdf(),
     PanelsIfc(),

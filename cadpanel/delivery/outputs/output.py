@@ -13,6 +13,7 @@ from cadpanel.delivery.contents import Contents, Proof
 
 if TYPE_CHECKING:  # the kernel takes seconds to load, and a refusal asks for names only
     from cadpanel.delivery.sheets import PanelSheet
+    from cadpanel.fitting.result import FitResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,9 +22,11 @@ class Delivery(Contents):
 
     Attributes:
         panels: the sheets that are delivered, as they were built.
+        result: the fit that they come from; None where no file shows what only a fit knows.
     """
 
     panels: tuple[PanelSheet, ...]
+    result: FitResult | None = None
 
 
 class Output(ABC):

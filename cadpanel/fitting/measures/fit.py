@@ -74,6 +74,12 @@ class Measures:
     lengths: Array
     shapes: tuple[Panel, ...]
 
+    def __repr__(self) -> str:
+        return (
+            f"<Measures of {len(self.drift)} panels and {len(self.seam_gap)} seams: gaps up to "
+            f"{self.max_seam_gap:.2f} mm, deviations up to {self.max_deviation.max():.2f} mm>"
+        )
+
     @property
     def widest_corners(self) -> Array:
         """(seams,) the largest corner gap of each seam, mm."""

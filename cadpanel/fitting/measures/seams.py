@@ -37,7 +37,7 @@ class AlongSeams:
 def along_seams(edges: PanelEdges, seams: Sequence[Seam]) -> AlongSeams:
     """How panels whose edges are known meet along whole seams."""
     gap, width, step, shift, kink = np.zeros((5, len(seams)))
-    for met in _batches(edges, seams):
+    for met in met_seams(edges, seams):
         first, second = met.curves(edges)
         found = seam_gap(first, second)
         gap[met.index], kink[met.index], width[met.index], step[met.index] = found
@@ -65,7 +65,7 @@ def corner_gaps(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, ...]:
     All corners meet where both edges have the same pieces, else only the two outermost.
     """
     gaps: dict[int, Array] = {}
-    for met in _batches(edges, seams):
+    for met in met_seams(edges, seams):
         first, second = met.curves(edges)
         pieces, others = (edges.pieces[batch] for batch in met.batches)
         for backwards, way in ((False, 1), (True, -1)):
@@ -78,7 +78,7 @@ def corner_gaps(edges: PanelEdges, seams: Sequence[Seam]) -> tuple[Array, ...]:
 
 
 @dataclass(frozen=True, slots=True)
-class _Met:
+class Met:
     """m seams between edges of two batches, the edge of the lower panel first.
 
     Attributes:
@@ -99,7 +99,8 @@ class _Met:
         return first, second
 
 
-def _batches(edges: PanelEdges, seams: Sequence[Seam]) -> Iterator[_Met]:
+def met_seams(edges: PanelEdges, seams: Sequence[Seam]) -> Iterator[Met]:
+    """All seams, those between edges of like batches together."""
     if not seams:
         return
     panels, on = (np.array([getattr(seam, what) for seam in seams], dtype=np.intp) for what in ("panels", "edges"))
@@ -110,4 +111,4 @@ def _batches(edges: PanelEdges, seams: Sequence[Seam]) -> Iterator[_Met]:
     pairs, which = np.unique(batch, axis=0, return_inverse=True)
     for pair, (first, second) in enumerate(pairs.tolist()):
         index = np.flatnonzero(which.reshape(-1) == pair)
-        yield _Met(index, (first, second), row[index], backwards[index])
+        yield Met(index, (first, second), row[index], backwards[index])

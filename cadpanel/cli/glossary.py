@@ -1,0 +1,203 @@
+"""The words of tables, options and reports: what each means, and a small drawing where one says more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Term:
+    """A word and what it means.
+
+    Attributes:
+        name: as tables and options have it.
+        meaning: one or two sentences.
+        drawing: lines of plain text; empty where none is needed.
+        also: other words under which it is found.
+    """
+
+    name: str
+    meaning: str
+    drawing: str = ""
+    also: tuple[str, ...] = ()
+
+
+_SEAM = r"""
+   panel A          panel B
+  -------------+
+               |  step        +-------------
+               +              |
+                <--- width -->
+"""
+_ALONG = r"""
+   panel A   | |   panel B
+             | |
+  -----------+ |
+       shift   +-----------
+"""
+_EDGES = r"""
+               side 1
+          +--------------+
+    end 0 |  ----> t     | end 1      t runs along the fold,
+          |  ^ b         |            b across it
+          +--------------+
+               side 0
+"""
+_KINK = r"""
+      A ________
+                \  <- kink: the angle between the two skins
+                 \ B
+"""
+_BLEND = r"""
+       flange    bend    flange
+      _________.-----.
+                      \
+                       | flange
+"""
+_GRID = r"""
+     V ^  +----+----+----+
+       |  |    |    |    |
+       |  +----+----+----+
+       |  |    |    |    |       --grid 3x2
+       |  +----+----+----+
+       +------------------> U
+"""
+_DRIFT = r"""
+      drawn corner   o<--drift--> x   corner of the panel
+"""
+_DEVIATION = r"""
+      drawing   .-'''''-.
+              .'    ^    '.    deviation: square to the panel
+      panel  --------------
+"""
+
+GLOSSARY: tuple[Term, ...] = (
+    Term(
+        name="gap",
+        meaning="How far the edges of two neighbouring panels are apart at the worst place along their whole seam, mm. "
+        "Its parts are width, step and shift.",
+        drawing=_SEAM,
+        also=("seam gap",),
+    ),
+    Term(
+        name="corner gap",
+        meaning="How far two corresponding corners of neighbours are apart, mm. Where the patches of a panel meet is a "
+        "corner, too: along the seam it may lie elsewhere than the neighbour's, and nobody sees that, so a corner gap "
+        "can be larger than the gap along the seam.",
+    ),
+    Term(
+        name="width",
+        meaning="The part of a gap that lies in the skins and square to the seam, mm: how much wider or narrower than "
+        "asked for the joint is.",
+        drawing=_SEAM,
+    ),
+    Term(
+        name="step",
+        meaning="The part of a gap along the skins' normal, mm: one panel stands out beside the other. People see and "
+        "feel it.",
+        drawing=_SEAM,
+    ),
+    Term(
+        name="shift",
+        meaning="The part of a gap along the seam, at its two ends, mm: edges are out of line.",
+        drawing=_ALONG,
+    ),
+    Term(
+        name="kink",
+        meaning="The largest angle between the two skins across a seam, degrees. Inside of a panel there is none.",
+        drawing=_KINK,
+    ),
+    Term(
+        name="deviation",
+        meaning="How far the drawing lies from the panel that stands for it, mm: the largest, or the root mean square "
+        "(RMS) over all samples by their area.",
+        drawing=_DEVIATION,
+        also=("rms", "rms deviation"),
+    ),
+    Term(
+        name="Hausdorff distance",
+        meaning="The largest distance between the trimmed skin and the drawing, in both directions, mm: it counts what "
+        "sticks out beyond the drawing, too.",
+    ),
+    Term(
+        name="drift",
+        meaning="How far a corner of a panel lies from the drawn one: along the strip, and across the free edges, as a "
+        "share of the panel's length.",
+        drawing=_DRIFT,
+        also=("corner drift", "drift along", "drift across"),
+    ),
+    Term(
+        name="turn",
+        meaning="The angle between an edge at a seam and the seam as it is drawn, degrees (--seam-turn).",
+        also=("seam turn",),
+    ),
+    Term(
+        name="unevenness",
+        meaning="How far a corner on a seam lies off the middle between those before and after it, less what the "
+        "drawing has of that (--evenness).",
+        also=("evenness",),
+    ),
+    Term(
+        name="side",
+        meaning="Side 0 and side 1 are a panel's free edges along the fold; it is walked from side 0 to side 1. The "
+        "bend's place is told from side 0 (--blend).",
+        drawing=_EDGES,
+        also=("side 0", "side 1"),
+    ),
+    Term(
+        name="end",
+        meaning="End 0 and end 1 are the two edges across the fold, where a strip's panels meet each other. Each lies "
+        "in a plane.",
+        drawing=_EDGES,
+        also=("end 0", "end 1"),
+    ),
+    Term(
+        name="U and V",
+        meaning="The two directions in which a surface is parametrised; --grid UxV cuts it into U panels along the "
+        "first and V along the second.",
+        drawing=_GRID,
+        also=("u", "v", "grid"),
+    ),
+    Term(
+        name="feature",
+        meaning="The kind of shape that a panel has: which planes, cylinders and cones it is made of, in which order "
+        "(--feature, 'cadpanel features').",
+        drawing=_BLEND,
+    ),
+    Term(
+        name="bend",
+        meaning="The cylinder or cone of a panel; between two flanges it is what was taken for the bend: the stretch "
+        "of the drawing that it stands for (--blend overrides it).",
+        drawing=_BLEND,
+        also=("blend", "flange", "taken for the bend"),
+    ),
+    Term(
+        name="ruling",
+        meaning="A straight line on a panel, along which a cylinder or cone touches a flat bar; the patches of a panel "
+        "meet along rulings, without a kink.",
+    ),
+    Term(name="seam", meaning="Where two panels meet edge to edge; found by geometry, not by names."),
+    Term(
+        name="joint",
+        meaning="The clear width that is left open between the sheets of two neighbours (--joint). Half of it is cut "
+        "off each.",
+    ),
+    Term(name="skin", meaning="The face of the sheet that approximates the drawing, without thickness (skins.step)."),
+    Term(
+        name="each alone",
+        meaning="A baseline: every panel fitted for itself as near to the drawing as it comes, whatever that leaves "
+        "open at the seams. No fit that closes gaps deviates less.",
+        also=("local",),
+    ),
+    Term(
+        name="two-stage",
+        meaning="A baseline: first every panel alone, then the panels moved to close their gaps, as the industry does "
+        "it.",
+        also=("two_stage",),
+    ),
+    Term(
+        name="concurrent",
+        meaning="How cadpanel fits: shapes and gaps of all panels in one optimization, so that what one panel gives "
+        "way is made up for by its neighbours.",
+    ),
+)

@@ -1,0 +1,43 @@
+"""The command `cadpanel view`."""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cadpanel.delivery.outputs.report_html import PAGE
+from cadpanel.delivery.pictures.colours import Colour, require_matplotlib
+from cadpanel.delivery.pictures.views import View
+from cadpanel.errors import DeliveryError
+
+
+def view(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that 'cadpanel fit' wrote.")],
+    png: Annotated[
+        Path | None, typer.Option("--png", metavar="FILE", help="Draw the panels into this file; needs no screen.")
+    ] = None,
+    color: Annotated[Colour, typer.Option("--color", help="What panels and seams are coloured by.")] = "deviation",
+    view: Annotated[
+        View, typer.Option("--from", help="From where they are seen; north is along y, up along z.")
+    ] = "outside",
+) -> None:
+    """Open the page of a delivery in a browser, or draw its panels into a file.
+
+    Exit codes: 0 it is opened or drawn; 2 there is no page, or no browser.
+    """
+    page = folder / PAGE
+    if not page.is_file():
+        raise DeliveryError(
+            f"'{folder}' holds no {PAGE}: name a folder that 'cadpanel fit' wrote, with html among its --outputs."
+        )
+    if png is not None:
+        require_matplotlib()
+        from cadpanel.delivery.pictures.files import write_picture
+
+        write_picture(page, png, color, view)
+        return
+    if not webbrowser.open(page.resolve().as_uri()):
+        raise DeliveryError(f"no browser could be started: open '{page}' in one, or draw it with --png FILE.")

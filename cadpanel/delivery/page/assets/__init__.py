@@ -1,0 +1,1 @@
+"""What a page is made of: its frame, style and program, and the library that draws in three dimensions."""

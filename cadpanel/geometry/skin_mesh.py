@@ -1,0 +1,131 @@
+"""A panel's skin as triangles to look at: vertices on the exact surface, whatever the kind of panel. Millimetres."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.cone_sections import axis_frame
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.vectors import cross, side_of, unit
+
+ALONG, ACROSS = 8, 4
+"""Steps from end to end, and across a flat patch: enough to show how a deviation changes over them."""
+_TURN, _MOST_TURNS = math.radians(10.0), 24
+"""By how much the skin turns in one step across a round patch, and how many steps there are at most."""
+_HALVINGS = 2
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SkinMesh:
+    """A skin as f triangles between v vertices, with a chart of it.
+
+    Attributes:
+        points: (v, 3) on the skin, mm.
+        triangles: (f, 3) counterclockwise seen from outside.
+        chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths.
+        ways: (v, 2, 3) unit vectors in the skin along the chart's two axes.
+    """
+
+    points: Array
+    triangles: IntArray
+    chart: Array
+    ways: Array
+
+
+def skin_mesh(shape: Panel) -> SkinMesh:
+    """The mesh of a panel's skin; two panels with like patches and sweeps have the same triangles."""
+    _, cut_normals = shape.cuts()
+    return _grid_mesh(shape) if len(cut_normals) else _polygon_mesh(shape)
+
+
+def _grid_mesh(shape: Panel) -> SkinMesh:
+    """Of patches between two ends: rows from end to end, columns across."""
+    ends = _end_points(shape)
+    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
+    grid = (1.0 - share) * ends[0] + share * ends[1]
+    rows, columns = grid.shape[:2]
+    across, along = arc_length(grid[rows // 2]), arc_length(np.swapaxes(grid, 0, 1)[columns // 2])
+    chart = np.stack(np.meshgrid(across, along), axis=-1)
+    ways = np.stack([unit(np.gradient(grid, axis=1)), unit(np.gradient(grid, axis=0))], axis=2)
+    corner = np.arange(rows * columns).reshape(rows, columns)
+    here, right, up, far = corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]
+    # The walk goes along t x n, so that across and along are right-handed with the outward normal.
+    triangles = np.stack([here, right, far, here, far, up], axis=-1).reshape(-1, 3)
+    return SkinMesh(
+        points=grid.reshape(-1, 3), triangles=triangles, chart=chart.reshape(-1, 2), ways=ways.reshape(-1, 2, 3)
+    )
+
+
+def _end_points(shape: Panel) -> Array:
+    """(2, c, 3) points along both ends, that of a generatrix or straight line over the skin at the same place."""
+    corners = shape.corners()
+    points, directions, normals = shape.rulings()
+    cuts = tuple(zip(*shape.cuts(), strict=True))
+    parts: list[Array] = []
+    for index, patch in enumerate(shape.patches):
+        if not isinstance(patch, ConePatch):
+            share = np.linspace(0.0, 1.0, ACROSS + 1)[:, None]
+            part = (1.0 - share) * corners[:, None, index] + share * corners[:, None, index + 1]
+        else:
+            frame = axis_frame(points[index], directions[index], normals[index], patch)
+            steps = min(_MOST_TURNS, max(ACROSS, math.ceil(abs(patch.sweep) / _TURN)))
+            radials = frame.radials(np.linspace(0.0, patch.sweep, steps + 1))
+            at = frame.center + frame.level_radius * radials
+            way = math.cos(frame.half_angle) * frame.axis + math.sin(frame.half_angle) * radials
+            part = np.stack([at + ((q - at) @ m / (way @ m))[:, None] * way for q, m in cuts])
+        parts.append(part if not parts else part[:, 1:])
+    return np.concatenate(parts, axis=1)
+
+
+def _polygon_mesh(shape: Panel) -> SkinMesh:
+    """Of a plane with corners all round."""
+    outline = shape.corners()[0]
+    _, directions, normals = shape.rulings()
+    axes = np.stack([directions[0], cross(normals[0], directions[0])])
+    flat = (outline - outline[0]) @ axes.T
+    chart, triangles = _halved(flat, _ears(flat))
+    return SkinMesh(
+        points=outline[0] + chart @ axes,
+        triangles=triangles,
+        chart=chart,
+        ways=np.broadcast_to(axes, (len(chart), 2, 3)),
+    )
+
+
+def _ears(corners: Array) -> IntArray:
+    """(n - 2, 3) triangles of a simple polygon (n, 2), counterclockwise, cut off ear by ear."""
+    left = list(range(len(corners)))
+    found: list[tuple[int, int, int]] = []
+    while len(left) > 3:
+        ear = next((i for i in range(len(left)) if _is_ear(corners, left, i)), 0)  # the first where none is clear
+        found.append((left[ear - 1], left[ear], left[(ear + 1) % len(left)]))
+        del left[ear]
+    found.append((left[0], left[1], left[2]))
+    return np.array(found)
+
+
+def _is_ear(corners: Array, left: list[int], place: int) -> bool:
+    """Whether the corner at a place juts out and no other one lies in the triangle with its neighbours."""
+    triangle = [left[place - 1], left[place], left[(place + 1) % len(left)]]
+    a, b, c = corners[triangle]
+    others = corners[[corner for corner in left if corner not in triangle]]
+    inside = np.all([side_of(one, other, others) >= 0.0 for one, other in ((a, b), (b, c), (c, a))], axis=0)
+    return bool(side_of(a, b, c) > 0.0 and not inside.any())
+
+
+def _halved(points: Array, triangles: IntArray) -> tuple[Array, IntArray]:
+    """The same with every edge halved, some times over: each triangle becomes four, neighbours share vertices."""
+    for _ in range(_HALVINGS):
+        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]], axis=-1)
+        pairs, which = np.unique(edges.reshape(-1, 2), axis=0, return_inverse=True)
+        a, b, c = triangles.T
+        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
+        points = np.concatenate([points, points[pairs].mean(axis=1)])
+        triangles = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=-1).reshape(-1, 3)
+    return points, triangles

@@ -1,0 +1,1 @@
+"""The page of a delivery in a real browser."""

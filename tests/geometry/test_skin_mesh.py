@@ -1,0 +1,48 @@
+"""Meshes to look at: on the exact surface, as large as it, right side out, whatever the kind of panel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cadpanel.features.catalogue import feature
+from cadpanel.fitting.measures.deviation import deviations
+from cadpanel.geometry.shape import PolygonShape
+from cadpanel.geometry.skin_mesh import skin_mesh
+from tests.instances import NAMES, random_polygon, random_shapes
+
+
+def area_and_normal(mesh):
+    a, b, c = (mesh.points[mesh.triangles[:, corner]] for corner in range(3))
+    doubled = np.cross(b - a, c - a)
+    return 0.5 * np.linalg.norm(doubled, axis=1).sum(), doubled
+
+
+def shapes():
+    return [*(random_shapes(feature(name), 4, 1)[0] for name in NAMES), random_polygon(3, 6)]
+
+
+@pytest.mark.parametrize("shape", shapes(), ids=lambda shape: shape.feature)
+def test_vertices_lie_on_the_skin_and_the_mesh_is_as_large_as_it(shape):
+    mesh = skin_mesh(shape)
+    area, doubled = area_and_normal(mesh)
+    assert np.abs(deviations([shape], mesh.points[None])).max() < 1e-8
+    assert area == pytest.approx(shape.area(), rel=5e-3)
+    away = skin_mesh(shape.offset(1.0))
+    assert np.array_equal(away.triangles, mesh.triangles)
+    outward = (away.points - mesh.points)[mesh.triangles].mean(axis=1)
+    assert (np.einsum("fx,fx->f", doubled, outward) > 0.0).all()
+    assert np.linalg.norm(mesh.ways, axis=-1) == pytest.approx(1.0)
+
+
+def test_a_polygon_with_a_notch_is_filled_up_to_its_outline_and_no_farther():
+    outline = np.array([(0, 0), (4, 0), (4, 3), (2, 1), (0, 3)], dtype=np.float64)
+    shape = PolygonShape(
+        name="notch",
+        feature="polygon",
+        outline=np.column_stack([outline, np.zeros(5)]),
+        normal=np.array([0.0, 0.0, 1.0]),
+    )
+    area, doubled = area_and_normal(skin_mesh(shape))
+    assert area == pytest.approx(shape.area())
+    assert (doubled[:, 2] > 0.0).all()

@@ -127,7 +127,12 @@ def fit(
         _require(time_limit, int | float, "a time limit is a number of seconds")
     if time_limit is not None and not time_limit > 0.0:
         raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
-    return fit_reference(reference, _asked(settings, changes), progress, time_limit=time_limit)
+    how = _asked(settings, changes)
+    if how.rules is not None and how.rules.unread:
+        from cadpanel.delivery.earlier import with_earlier
+
+        how = with_earlier(how, reference)
+    return fit_reference(reference, how, progress, time_limit=time_limit)
 
 
 def compare(

@@ -102,6 +102,8 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     bends = _bends(report)
     if bends:
         out.print(Text(bends))
+    for line in _rules(report):
+        out.print(Text(line))
     traded = _traded(report)
     if traded:
         out.print(Text(traded))
@@ -113,6 +115,20 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     if len(notes) > _MOST_NOTES:
         out.print(Text(f"{counted(len(notes) - _MOST_NOTES, 'more note')} in {REPORT}."))
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def _rules(report: ReportModel) -> Iterator[str]:
+    """What came of each rule; of those that hold no more than a few."""
+    shown = [rule for rule in report.rules if not rule.kept]
+    shown += [rule for rule in report.rules if rule.kept][:_MOST_NOTES]
+    for rule in shown:
+        unit = f" {rule.unit}" if rule.unit else ""
+        yield (
+            f"Rule {'held' if rule.kept else 'NOT held'}: {rule.rule}; {rule.measure} {rule.found:.3g}{unit}, at most "
+            f"{rule.allowed:.3g}{unit}."
+        )
+    if len(report.rules) > len(shown):
+        yield f"{counted(len(report.rules) - len(shown), 'more rule')} held, in {REPORT}."
 
 
 def _traded(report: ReportModel) -> str:

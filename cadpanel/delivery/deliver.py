@@ -19,6 +19,7 @@ from cadpanel.delivery.records.from_fit import (
     origin_record,
     panel_records,
     reference_record,
+    rule_records,
     seam_records,
     solve_record,
     with_flat_parts,
@@ -122,7 +123,8 @@ def fill_delivery(
         panels=panels,
         seams=proved.seams,
         features=dict(Counter(panel.feature for panel in panels)),
-        summary=summary(result.measures, result.local, result.settings),
+        rules=rule_records(result),
+        summary=summary(result.measures, result.local, result.settings, result.outcomes),
         baselines=baselines,
         certificate=proved.certificate,
         timing=TimingModel(

@@ -11,7 +11,8 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.obliqueness import too_oblique
-from cadpanel.fitting.measures.verdict import limits_of
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
+from cadpanel.fitting.rules.rule import Outcome
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
@@ -32,6 +33,15 @@ _OF_GAPS = {
 _GIVES_WAY_FIRST = DriftAlong()
 
 
+def _broken(outcome: Outcome) -> str:
+    """What to say of a rule that does not hold."""
+    unit = f" {outcome.unit}" if outcome.unit else ""
+    return (
+        f"the rule '{outcome.rule}' does not hold: {outcome.measure} {outcome.found:.4g}{unit}, where "
+        f"{outcome.allowed:.4g}{unit} are allowed; allow wider gaps, or leave the rule out"
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class FitResult:
     """Fitted panels and what they are worth.
@@ -44,11 +54,13 @@ class FitResult:
         unknowns: (panels, size) the solver's numbers of the shapes, from which a fit of the same panels with the same
             features may go on.
         baselines: what it is held against, fitted and measured when `local` or `two_stage` is first asked for.
-        tolerance_met: whether every gap is within the tolerance, every limit kept and, where features are
-            chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
+        tolerance_met: whether every gap is within the tolerance, every limit and every rule kept and, where features
+            are chosen automatically, every deviation within the largest; with weights only the deviation has one to
+            miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
+        outcomes: what was measured of each rule for single panels and seams.
         prices: by how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first
             order: as long as the change is small, and the panels stay near where they are. By name: "gap", "width",
             "step" and "shift" a mm, limits by their settings' names a mm, degree or whole panel's length. Empty where
@@ -67,6 +79,7 @@ class FitResult:
     agreed: int
     iterations: int
     stopped: Stop
+    outcomes: tuple[Outcome, ...]
     prices: Mapping[str, float]
     seconds: float
 
@@ -123,6 +136,9 @@ class FitResult:
                 "more, allow wider gaps, or divide it further"
             )
         missed = self._missed_gaps()
+        broken = [outcome for outcome in self.outcomes if not outcome.kept]
+        if broken and keeps_limits(m, self.settings):
+            return "; ".join(map(_broken, broken))
         limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
         panel = int(np.argmax(limit.excess(m, most)))
         if not limit.kept(m, most)[panel]:
@@ -136,12 +152,14 @@ class FitResult:
 
     def _missed_gaps(self) -> list[str]:
         """What to say of the seam that exceeds most what is allowed of gaps or of one of their parts, if one does."""
-        gaps = self.measures.gaps
-        over = {what: float((gaps[what] / most).max(initial=0.0)) for what, most in self.settings.gaps.items()}
-        what = max(over, key=lambda one: over[one])
-        if over[what] <= 1.0:
+        gaps, names = self.measures.gaps, [panel.name for panel in self.reference.panels]
+        asked = self.settings.gaps_of(names, self.measures.seam_panels)
+        over = {what: gaps[what] / most for what, most in asked.items()}
+        what = max(over, key=lambda one: float(over[one].max(initial=0.0)))
+        if over[what].max(initial=0.0) <= 1.0:
             return []
-        worst = int(gaps[what].argmax())
-        a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
-        allowed, of = f"{self.settings.gaps[what]:g} mm", gaps[what][worst]
+        worst = int(over[what].argmax())
+        a, b = (names[i] for i in self.reference.seams[worst].panels)
+        of = gaps[what][worst]
+        allowed = f"{of / over[what][worst]:.6g} mm"
         return [_OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")]

@@ -6,7 +6,7 @@ summary is the worst of its panels and seams can.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from cadpanel.arrays import Array
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.features.catalogue import AUTO
+from cadpanel.fitting.rules.book import rules_of
 from cadpanel.geometry.shape import edge_corners
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -36,11 +37,14 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
         certificate: what the files beside it show now.
     """
     panels = {panel.name: panel for panel in report.panels}
+    rules = rules_of(report.settings.rules)
+    given = {} if rules is None else rules.features([panel.name for panel in report.panels])
     failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
     failures += [
-        f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
-        for panel in report.panels
-        if panel.feature != report.settings.feature != AUTO
+        f"Panel '{panel.name}': the report calls it {panel.feature}, {asked} was asked for."
+        for place, panel in enumerate(report.panels)
+        for asked in [given.get(place, report.settings.feature)]
+        if panel.feature != asked != AUTO
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
     failures += _summary_faults(report)
@@ -150,30 +154,62 @@ _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
 }
 
 
+def _rule_faults(report: ReportModel) -> Iterator[str]:
+    for rule in report.rules:
+        if rule.kept != (rule.found <= rule.allowed):
+            yield (
+                f"The rule '{rule.rule}' is called {'kept' if rule.kept else 'not kept'}, with {rule.found:.6g} "
+                f"{rule.unit} where {rule.allowed:.6g} are allowed."
+            )
+    if report.summary.tolerance_met and not all(rule.kept for rule in report.rules):
+        yield "The report calls its tolerance met, and not all its rules are kept."
+
+
+def _over_gaps(report: ReportModel) -> dict[str, tuple[float, float, float]]:
+    """Of each thing that is held of gaps the largest share of what its seam may have, that, and what that is, mm."""
+    places = {panel.name: place for place, panel in enumerate(report.panels)}
+    rules = rules_of(report.settings.rules)
+    allowed: Mapping[str, float | Array] = report.settings.gaps
+    if rules is not None and report.settings.gaps:
+        pairs = np.array([[places[name] for name in seam.panels] for seam in report.seams]).reshape(-1, 2)
+        allowed = rules.gaps(report.settings.gaps, list(places), pairs)
+    over = {}
+    for what, most in allowed.items():
+        found = np.array([_GAPS[what](seam) for seam in report.seams])
+        each = np.broadcast_to(most, len(found))
+        worst = int((found / each).argmax()) if len(found) else -1
+        over[what] = (found[worst] / each[worst], found[worst], each[worst]) if len(found) else (0.0, 0.0, 0.0)
+    return over
+
+
+_GAPS: dict[str, Callable[[SeamModel], float]] = {
+    "gap": lambda seam: max(seam.max_corner_gap, seam.max_seam_gap),
+    "width": lambda seam: seam.width,
+    "step": lambda seam: seam.step,
+    "shift": lambda seam: seam.shift,
+}
+
+
 def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
-    allowed = report.settings.gaps
-    if not allowed:
+    yield from _rule_faults(report)
+    if not report.settings.gaps:
         return
-    found = {
-        "gap": max(summary.max_corner_gap, summary.max_seam_gap),
-        "width": summary.max_width,
-        "step": summary.max_step,
-        "shift": summary.max_shift,
-    }
+    gaps = _over_gaps(report)
     deviation = report.settings.max_deviation
     if summary.tolerance_met and deviation is not None and summary.max_deviation > deviation + SAME_LENGTH:
         yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
-    for what, most in allowed.items():
-        if summary.tolerance_met and found[what] > most:
-            yield f"The report calls the {what} of {most:g} mm held, and one in it is {found[what]:.6g} mm."
+    for what, (share, found, most) in gaps.items():
+        if summary.tolerance_met and share > 1.0:
+            yield f"The report calls the {what} of {most:g} mm held, and one in it is {found:.6g} mm."
     limits = list(_limits(report, summary))
     beyond = [limit for limit in limits if limit.over > SAME_LENGTH]
     if summary.tolerance_met and beyond:
         yield beyond[0].sentence
     far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
-    within = all(found[what] < most - SAME_LENGTH for what, most in allowed.items()) and all(
+    within = all(found < most - SAME_LENGTH for share, found, most in gaps.values() if share > 0.0) and all(
         limit.over < -SAME_LENGTH for limit in limits
     )
+    within &= all(rule.kept for rule in report.rules)
     if not summary.tolerance_met and not far and within:
         yield "The report calls its tolerance not met, and all its gaps and limits are kept."
 

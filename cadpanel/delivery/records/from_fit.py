@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from cadpanel.delivery.records.report import (
     OriginModel,
     PanelModel,
     ReferenceModel,
+    RuleModel,
     SeamModel,
     Setting,
     SolveModel,
@@ -76,6 +77,13 @@ def _prices(result: FitResult) -> dict[str, float]:
     percent = {limit.name for limit in LIMITS if limit.percent}
     found = {name: price / 100.0 if name in percent else price for name, price in result.prices.items()}
     return {name: price for name, price in found.items() if price > _FREE}
+
+
+def rule_records(result: FitResult) -> tuple[RuleModel, ...]:
+    """What was measured of every rule."""
+    return tuple(
+        RuleModel.model_validate({**asdict(outcome), "kept": outcome.kept}, by_name=True) for outcome in result.outcomes
+    )
 
 
 def baselines_record(result: FitResult) -> BaselinesModel:

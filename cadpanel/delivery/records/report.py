@@ -84,6 +84,28 @@ class SolveModel(Record):
     prices: dict[str, NonNegative] = Field(default_factory=dict)
 
 
+class RuleModel(Record):
+    """What was measured of a rule for single panels or seams.
+
+    Attributes:
+        rule: in a few words, with the names of what it is about.
+        measure: what was measured.
+        found: the number.
+        allowed: what it may be at most.
+        unit: "mm" or "degrees"; empty of what is counted.
+        kept: whether it holds.
+        values: the numbers of single panels behind it, by their names: of radii those halfway between the ends.
+    """
+
+    rule: str
+    measure: str
+    found: NonNegative
+    allowed: NonNegative
+    unit: Literal["mm", "degrees", ""]
+    kept: bool
+    values: dict[str, float] = Field(default_factory=dict)
+
+
 class FittedModel(Record):
     """A panel as it was fitted, before it was cut back from its seams.
 
@@ -324,6 +346,7 @@ class ReportModel(Record):
     panels: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
     features: dict[str, NonNegativeCount] = Field(default_factory=dict)
+    rules: tuple[RuleModel, ...] = ()
     summary: SummaryModel
     baselines: BaselinesModel
     certificate: CertificateModel

@@ -150,7 +150,7 @@ def _tightened(
 
 def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list[GapTerm]:
     """What holds gaps, a little inside what is allowed, as seams run at unknowns (panels, size)."""
-    allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
+    allowed = {what: most * (1.0 - MARGIN) for what, most in problem.gaps(settings).items()}
     return gap_terms(problem, allowed, problem.state(unknowns))
 
 
@@ -158,7 +158,7 @@ def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dic
     """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
     met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
     measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
-    excess = {what: measured[what] / most for what, most in settings.gaps.items()}
+    excess = {what: measured[what] / most for what, most in problem.gaps(settings).items()}
     return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
 
 
@@ -181,7 +181,7 @@ def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     """RMS deviation, and a large penalty for gaps and limits that do not hold."""
     state = problem.state(unknowns)
-    held: list[HeldTerm] = [*gap_terms(problem, settings.gaps, state), *problem.limits(settings)]
+    held: list[HeldTerm] = [*gap_terms(problem, problem.gaps(settings), state), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = problem.rms(problem.deviation.cost(state))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

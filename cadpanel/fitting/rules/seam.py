@@ -1,0 +1,92 @@
+"""Gaps of single seams: narrower where people stand before them, wider where nobody sees them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.errors import SettingsError
+from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, places_of, words_of
+from cadpanel.reference.model import Reference
+from cadpanel.setting import require
+
+_PARTS = ("gap", "width", "step", "shift")
+_LEAST = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeamRule(Rule):
+    """What some seams may have of gaps, instead of what all may.
+
+    Attributes:
+        between: two words: seams between a panel that the first means and one that the second means.
+        gap, width, step, shift: mm.
+    """
+
+    table: ClassVar[str] = "seam"
+
+    between: tuple[str, ...]
+    gap: float | None = None
+    width: float | None = None
+    step: float | None = None
+    shift: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what says nothing, or no lengths.
+
+        Raises:
+            SettingsError: saying what is wanted.
+        """
+        object.__setattr__(self, "between", words_of(self.between, "the two panels that a [[seam]] lies between"))
+        if len(self.between) != 2:
+            raise SettingsError("a [[seam]] lies between two panels: between = ['NW-03', 'NW-04'], or ['NW-*', 'NW-*']")
+        for part, value in self._asked().items():
+            require(f"{part} of a [[seam]]", value, least=_LEAST, unit=" mm")
+        if not self._asked():
+            raise SettingsError("a [[seam]] says what is allowed there: gap, width, step or shift, mm")
+
+    def gaps(self, names: Sequence[str], seam_panels: IntArray) -> dict[str, Array]:
+        """See `Rule.gaps`."""
+        own = self._seams(names, seam_panels)
+        return {part: np.where(own, value, np.nan) for part, value in self._asked().items()}
+
+    def pose(self, reference: Reference, features: Sequence[PanelFeature]) -> list[Posed]:
+        """See `Rule.pose`."""
+        del features
+        names = [panel.name for panel in reference.panels]
+        panels = np.array([seam.panels for seam in reference.seams], dtype=np.intp).reshape(-1, 2)
+        own, rule = self._seams(names, panels), "|".join(self.between)
+        return [_Allowed(rule, part, own, value) for part, value in self._asked().items()]
+
+    def _asked(self) -> dict[str, float]:
+        found = {part: getattr(self, part) for part in _PARTS}
+        return {part: value for part, value in found.items() if value is not None}
+
+    def _seams(self, names: Sequence[str], seam_panels: IntArray) -> BoolArray:
+        first, second = (np.isin(seam_panels, places_of([word], names, self.table)) for word in self.between)
+        own: BoolArray = (first[:, 0] & second[:, 1]) | (first[:, 1] & second[:, 0])
+        if not own.any():
+            beside = [names[i] for pair in seam_panels for i in pair if first[(seam_panels == pair).all(axis=1)].any()]
+            near = ", ".join(f"'{name}'" for name in list(dict.fromkeys(beside))[:3]) or "no other panel"
+            raise SettingsError(
+                f"the rule [{self.table}] names the seam between '{self.between[0]}' and '{self.between[1]}', which do "
+                f"not meet; on seams of '{self.between[0]}' there are {near}"
+            )
+        return own
+
+
+class _Allowed(Posed):
+    """A part of the gaps of some seams."""
+
+    def __init__(self, rule: str, part: str, own: BoolArray, allowed: float) -> None:
+        self._rule, self._part, self._own, self._allowed = rule, part, own, allowed
+
+    def outcome(self, fitted: Fitted) -> Outcome:
+        """See `Posed.outcome`."""
+        found = float(fitted.gaps[self._part][self._own].max())
+        return Outcome(rule=f"seam {self._rule}", measure=f"largest {self._part}", found=found, allowed=self._allowed)

@@ -339,7 +339,7 @@ def _build(
 
     sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
     if isinstance(panels, FitResult):
-        return build_panels(panels.shapes, sheet, panels.reference.seams).panels
+        return build_panels(panels.shapes, sheet, panels.reference.seams, None, panels.own_joints()).panels
     return build_panels([panels], sheet).panels
 
 

@@ -109,6 +109,12 @@ class FitResult:
                 return shape
         raise KeyError(name)
 
+    def own_joints(self) -> dict[int, float]:
+        """Clear widths of the joints of single seams that rules ask for, by their places, mm."""
+        if self.settings.rules is None:
+            return {}
+        return self.settings.rules.joints([shape.name for shape in self.shapes], self.measures.seam_panels)
+
     def shortfall(self) -> str | None:
         """None if the tolerance and all limits hold, else one sentence on the worst seam or panel, and why it ended."""
         missed = self._missed()

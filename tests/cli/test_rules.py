@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from cadpanel.delivery.records.consistency import check_report
-from cadpanel.delivery.records.report import read_report
+from cadpanel.delivery.records.report import ClearModel, read_report
 from cadpanel.fitting.rules.book import rules_of
 from tests.cli.conftest import Run
 
@@ -16,7 +16,7 @@ def test_rules_are_measured_told_and_kept_in_the_report(
 ) -> None:
     rules = tmp_path / "rules.toml"
     rules.write_text(
-        f"[shop]\nradii = [430, 450, 480]\n[[seam]]\nbetween = ['N-01', 'N-0*']\nstep = 4.5\n"
+        f"[shop]\nradii = [430, 450, 480]\n[[seam]]\nbetween = ['N-01', 'N-0*']\nstep = 4.5\njoint = 6\n"
         f"[[lock]]\npanels = 'N-03'\ndelivery = '{delivered}'\n[[feature]]\npanels = 'N-01'\n"
         "feature = 'plane-cylinder-plane'\n",
         encoding="utf-8",
@@ -29,10 +29,21 @@ def test_rules_are_measured_told_and_kept_in_the_report(
     assert {rule.kept for rule in report.rules} == {True, False}
     assert report.features == {"plane-cylinder-plane": 1, "plane-cone-plane": 2}
     assert run("verify", tmp_path / "out").code == 0
+    assert [(seam.joint, seam.clear) for seam in report.seams] == [
+        (6.0, ClearModel(least=6.0, largest=6.0)),
+        (None, ClearModel(least=0.0, largest=0.0)),
+    ]
     assert report.settings.rules is not None
     assert len(report.settings.rules["lock"][0]["made"][0]) == 14
-    broken = report.model_copy(update={"rules": tuple(rule.model_copy(update={"kept": True}) for rule in report.rules)})
-    assert any("is called kept" in fault for fault in check_report(broken, report.certificate))
+    broken = report.model_copy(
+        update={
+            "rules": tuple(rule.model_copy(update={"kept": True}) for rule in report.rules),
+            "seams": tuple(seam.model_copy(update={"joint": 5.0}) for seam in report.seams),
+        }
+    )
+    faults = check_report(broken, report.certificate)
+    assert any("is called kept" in fault for fault in faults)
+    assert any("its own joint of 5.0 mm is not the one of 6.0 mm" in fault for fault in faults)
     again = rules_of(json.loads(report.model_dump_json())["settings"]["rules"])
     assert again is not None
     assert not again.unread

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.features.catalogue import AUTO
-from cadpanel.fitting.rules.book import rules_of
+from cadpanel.fitting.rules.book import Rules, rules_of
 from cadpanel.geometry.shape import edge_corners
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -47,6 +47,7 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
         if panel.feature != asked != AUTO
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
+    failures += _joint_faults(report, rules)
     failures += _summary_faults(report)
     failures += _certificate_faults(report.certificate, certificate)
     return tuple(failures)
@@ -118,6 +119,22 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
         yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
 
 
+def _joint_faults(report: ReportModel, rules: Rules | None) -> Iterator[str]:
+    """Joints of single seams that the list of seams calls asked for, and the rules do not."""
+    own = {} if rules is None else rules.joints([panel.name for panel in report.panels], _seam_panels(report))
+    for place, seam in enumerate(report.seams):
+        if seam.joint != own.get(place):
+            yield (
+                f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': its own joint of {seam.joint} mm is not the one of "
+                f"{own.get(place)} mm that the rules ask for."
+            )
+
+
+def _seam_panels(report: ReportModel) -> IntArray:
+    places = {panel.name: place for place, panel in enumerate(report.panels)}
+    return np.array([[places[name] for name in seam.panels] for seam in report.seams], dtype=np.intp).reshape(-1, 2)
+
+
 def _fitted(panel: PanelModel) -> Array:
     """The panel's corners as the fit had them, in rows."""
     return np.array(panel.corners if panel.fitted is None else panel.fitted.corners)
@@ -167,12 +184,11 @@ def _rule_faults(report: ReportModel) -> Iterator[str]:
 
 def _over_gaps(report: ReportModel) -> dict[str, tuple[float, float, float]]:
     """Of each thing that is held of gaps the largest share of what its seam may have, that, and what that is, mm."""
-    places = {panel.name: place for place, panel in enumerate(report.panels)}
     rules = rules_of(report.settings.rules)
     allowed: Mapping[str, float | Array] = report.settings.gaps
     if rules is not None and report.settings.gaps:
-        pairs = np.array([[places[name] for name in seam.panels] for seam in report.seams]).reshape(-1, 2)
-        allowed = rules.gaps(report.settings.gaps, list(places), pairs)
+        names = [panel.name for panel in report.panels]
+        allowed = rules.gaps(report.settings.gaps, names, _seam_panels(report))
     over = {}
     for what, most in allowed.items():
         found = np.array([_GAPS[what](seam) for seam in report.seams])

@@ -208,6 +208,7 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, join
         unevenness=float(measures.uneven[index]),
         max_kink=float(np.degrees(measures.kink[index])),
         plane=cut_model(joint.plane.point, (1.0 if order[0] == 0 else -1.0) * joint.plane.normal),
+        joint=joint.own,
         recut=joint.recut,
     )
 

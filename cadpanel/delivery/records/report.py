@@ -210,6 +210,7 @@ class SeamModel(Record):
         max_kink: largest angle between the two skins' normals across the seam, degrees.
         plane: in the middle of the joint, its normal out of the first panel; None in reports from before there were
             joints.
+        joint: clear width that was asked for of this seam alone, mm; None where it is that of all.
         recut: how far a corner of either edge was from that plane, at most, mm: so far the edges were moved to lie in
             it; the same.
         clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same, and None
@@ -229,6 +230,7 @@ class SeamModel(Record):
     unevenness: NonNegative = 0.0
     max_kink: NonNegative
     plane: CutModel | None = None
+    joint: NonNegative | None = None
     recut: NonNegative | None = None
     clear: ClearModel | None = None
 

@@ -49,6 +49,10 @@ class Rules:
                 found[part] = np.where(np.isnan(asked), usual, asked)
         return found
 
+    def joints(self, names: Sequence[str], seam_panels: IntArray) -> dict[int, float]:
+        """Clear widths of the joints of single seams by their places, mm; what comes later counts."""
+        return {seam: width for rule in self.rules for seam, width in rule.joints(names, seam_panels).items()}
+
     def pose(self, reference: Reference, features: Sequence[PanelFeature]) -> tuple[Posed, ...]:
         """The rules for these panels with these features.
 

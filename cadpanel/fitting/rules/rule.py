@@ -165,6 +165,11 @@ class Rule(ABC):
         del names, seam_panels
         return {}
 
+    def joints(self, names: Sequence[str], seam_panels: IntArray) -> dict[int, float]:
+        """Clear widths that it gives to the joints of single seams, by their places, mm."""
+        del names, seam_panels
+        return {}
+
     @abstractmethod
     def pose(self, reference: Reference, features: Sequence[PanelFeature]) -> list[Posed]:
         """The rule for these panels with these features, once for everything that is measured of it.

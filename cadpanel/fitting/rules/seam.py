@@ -12,6 +12,7 @@ from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, places_of, words_of
+from cadpanel.geometry.limits import WIDEST_JOINT
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
 
@@ -26,6 +27,8 @@ class SeamRule(Rule):
     Attributes:
         between: two words: seams between a panel that the first means and one that the second means.
         gap, width, step, shift: mm.
+        joint: clear width between the two sheets, mm, when they are built; what a delivery proves of it is in the
+            report's seams.
     """
 
     table: ClassVar[str] = "seam"
@@ -35,6 +38,7 @@ class SeamRule(Rule):
     width: float | None = None
     step: float | None = None
     shift: float | None = None
+    joint: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse what says nothing, or no lengths.
@@ -47,13 +51,22 @@ class SeamRule(Rule):
             raise SettingsError("a [[seam]] lies between two panels: between = ['NW-03', 'NW-04'], or ['NW-*', 'NW-*']")
         for part, value in self._asked().items():
             require(f"{part} of a [[seam]]", value, least=_LEAST, unit=" mm")
-        if not self._asked():
-            raise SettingsError("a [[seam]] says what is allowed there: gap, width, step or shift, mm")
+        if self.joint is not None:
+            require("joint of a [[seam]]", self.joint, least=0.0, most=WIDEST_JOINT, unit=" mm")
+            object.__setattr__(self, "joint", float(self.joint))
+        if not self._asked() and self.joint is None:
+            raise SettingsError("a [[seam]] says what is allowed there: gap, width, step or shift, or its joint, mm")
 
     def gaps(self, names: Sequence[str], seam_panels: IntArray) -> dict[str, Array]:
         """See `Rule.gaps`."""
         own = self._seams(names, seam_panels)
         return {part: np.where(own, value, np.nan) for part, value in self._asked().items()}
+
+    def joints(self, names: Sequence[str], seam_panels: IntArray) -> dict[int, float]:
+        """See `Rule.joints`."""
+        if self.joint is None:
+            return {}
+        return dict.fromkeys(np.flatnonzero(self._seams(names, seam_panels)).tolist(), self.joint)
 
     def pose(self, reference: Reference, features: Sequence[PanelFeature]) -> list[Posed]:
         """See `Rule.pose`."""

@@ -64,7 +64,7 @@ def test_every_rule_of_the_catalogue_is_read_and_read_back(tmp_path: Path) -> No
         ({"kinds": {"most": 0}}, "at least 1"),
         ({"kinds": {"most": True}}, "are a number"),
         ({"seam": [{"between": ["A"], "step": 1}]}, "between two panels"),
-        ({"seam": [{"between": ["A", "B"]}]}, "gap, width, step or shift"),
+        ({"seam": [{"between": ["A", "B"]}]}, "gap, width, step or shift, or its joint"),
         ({"seam": [{"between": ["A", "B"], "step": -1}]}, "at least 0.001 mm"),
         ({"lock": [{"panels": "A", "delivery": "old", "corners": [1]}]}, "leave its corners out"),
         ({"mirror": [{"panel": "A", "of": "A"}]}, "two panels"),

@@ -33,6 +33,7 @@ _WORTH = {
     "evenness": ("0.1 % more unevenness", 0.1),
     "drift_along": ("1 % more drift along", 1.0),
     "drift_across": ("1 % more drift across", 1.0),
+    "drift_outline": ("0.1 % more drift of the outline", 0.1),
 }
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
 

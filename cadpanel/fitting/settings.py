@@ -22,6 +22,7 @@ from cadpanel.terms.limits.evenness import Evenness
 from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import limit_setting
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.outline_drift import DriftOutline
 from cadpanel.terms.limits.seam_turn import SeamTurn
 from cadpanel.terms.parts import PARTS
 
@@ -117,6 +118,7 @@ class FitSettings:
         max_kink: degrees between neighbouring skins across a seam; 180 for any.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
+        drift_outline: how far the free outline may leave the drawn one anywhere, square to it; 0.5 for any.
         blend: which stretch across the panels becomes their curved patches, where that is not to be told by the
             surface's normals: "410-540" (mm from side 0), "40-55%", "NW-03=410-540" for one panel, or several of these.
         min_radius: mm, the tightest that the shop can roll; no cone or cylinder gets tighter anywhere.
@@ -162,6 +164,7 @@ class FitSettings:
     max_kink: float = limit_setting(Kink)
     drift_along: float = limit_setting(DriftAlong)
     drift_across: float = limit_setting(DriftAcross)
+    drift_outline: float = limit_setting(DriftOutline)
     min_radius: float = limit_setting(MinRadius)
     blend: tuple[Blend, ...] = setting(
         (),
@@ -315,6 +318,7 @@ class FitKeywords(TypedDict, total=False):
     max_kink: float
     drift_along: float
     drift_across: float
+    drift_outline: float
     min_radius: float
     blend: str | Blend | Sequence[str | Blend]
     rules: str | Path | Mapping[str, Any] | Rules | None

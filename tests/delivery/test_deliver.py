@@ -28,7 +28,10 @@ from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel
 
-OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths", "shapes")
+OF_PANELS = (
+    *("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "outline_drift"),
+    *("lengths", "shapes"),
+)
 
 
 # ------------------------------------------------------------------------------------------------------------- patches

@@ -168,6 +168,7 @@ _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
     "max_corner_drift": lambda panel: panel.max_corner_drift,
     "max_drift_along": lambda panel: panel.max_drift_along,
     "max_free_edge_drift": lambda panel: panel.max_free_edge_drift,
+    "max_outline_drift": lambda panel: panel.outline_drift,
 }
 
 

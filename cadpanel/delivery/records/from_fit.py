@@ -132,6 +132,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         max_corner_drift=float(measures.drift[index]),
         max_drift_along=float(measures.drift_along[index]),
         max_free_edge_drift=float(measures.drift_across[index]),
+        outline_drift=float(measures.outline_drift[index]),
         area=built.area,
         volume=built.volume,
         corners=rows(built.shape.corners()),

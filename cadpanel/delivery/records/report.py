@@ -137,6 +137,7 @@ class PanelModel(Record):
         max_corner_drift: largest distance of a corner from its reference corner, mm.
         max_drift_along: the same, counted along the strip only, mm.
         max_free_edge_drift: the same, counted across the free edges only, mm.
+        outline_drift: largest distance of its free edges from the drawn ones, anywhere along them, mm.
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
         corners: of the skin as it is built, mm; by them the files are held against the report. In rows: [end][ruling]
@@ -165,6 +166,7 @@ class PanelModel(Record):
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
+    outline_drift: NonNegative = 0.0
     area: Positive
     volume: Positive
     corners: tuple[tuple[Vector, ...], ...]
@@ -253,7 +255,9 @@ class SummaryModel(Record):
         max_corner_drift: largest distance of a corner from its reference corner.
         max_drift_along: the same, counted along the strip only.
         max_free_edge_drift: the same, counted across the free edges only.
-        drift_along_percent, drift_across_percent: the last two as the largest share of a panel's own length, percent.
+        max_outline_drift: largest distance of a free edge from the drawn outline, anywhere along it.
+        drift_along_percent, drift_across_percent: the two before it as the largest share of a panel's own length,
+            percent.
         local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
         tolerance_met: whether every gap is within the tolerance and every limit is kept; always true where weights
             ruled, which have no tolerance to miss.
@@ -272,6 +276,7 @@ class SummaryModel(Record):
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
+    max_outline_drift: NonNegative = 0.0
     drift_along_percent: NonNegative
     drift_across_percent: NonNegative
     local_rms_multiple: NonNegative | None

@@ -46,6 +46,7 @@ class ComparisonSettingsModel(Record):
         weights: the weights, or None where a tolerance was held.
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
+        drift_outline: how far the free outline might leave the drawn one; 0.5 for any.
         min_radius: tightest radius that was allowed anywhere, mm.
         blend: which stretches were to become curved patches, where the user said so.
         restarts: further starts.
@@ -63,6 +64,7 @@ class ComparisonSettingsModel(Record):
     weights: WeightsModel | None
     drift_along: NonNegative
     drift_across: NonNegative
+    drift_outline: NonNegative = 0.5
     min_radius: NonNegative = 0.0
     blend: tuple[str, ...] = ()
     restarts: NonNegativeCount

@@ -42,6 +42,7 @@ def summary(
         "max_corner_drift": float(measures.drift.max()),
         "max_drift_along": float(measures.drift_along.max()),
         "max_free_edge_drift": float(measures.drift_across.max()),
+        "max_outline_drift": float(measures.outline_drift.max()),
         "local_rms_multiple": measures.overall_rms / local.overall_rms if local.overall_rms > _EXACT else None,
         "tolerance_met": keeps_limits(measures, settings) and all(outcome.kept for outcome in outcomes),
     }

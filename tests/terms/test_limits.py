@@ -108,6 +108,9 @@ def test_the_names_of_a_limit_are_its_own_and_its_default_is_in_its_range(limit:
     assert "{" not in limit.rows[-1].form.format(1.0)
 
 
+TWICE = ("evenness", "max_kink", "drift_outline")
+
+
 def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
     """What would have to be allowed for the strip to miss a limit by a share, or to keep it by one below 0."""
     found = limit.measure(fitted().measures)
@@ -118,14 +121,14 @@ def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
 @pytest.mark.parametrize("limit", ASKED, ids=lambda limit: limit.name)
 def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(limit: Limit) -> None:
     result = fitted()
-    for by, kept in ((-1e-6, True), (1e-4, False)):
+    for by, kept in ((-1e-6, True), (1e-3, False)):
         allowed, worst = broken(limit, by)
         how = replace(result.settings, **cast("dict[str, Any]", allowed))
         assert keeps_limits(result.measures, how) is kept
         assert bool(limit.excess(result.measures, allowed[limit.name]).max() <= 1.0) is kept
         again = replace(result, settings=how, tolerance_met=kept)
-        # What a seam does counts for both of its panels.
-        assert len(offenders(again)) == (0 if kept else 2 if limit.name in ("evenness", "max_kink") else 1)
+        # What a seam does counts for both of its panels, and the outlines of two are as far off the drawn one.
+        assert len(offenders(again)) == (0 if kept else 2 if limit.name in TWICE else 1)
         said = again.shortfall()
         if kept:
             assert said is None

@@ -95,7 +95,7 @@ def fill_delivery(
         built = build_panels(result.shapes, sheet, result.reference.seams, tell, result.own_joints())
         parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
         panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
-        seams = seam_records(result.reference, result.measures, built.joints)
+        seams = seam_records(result.reference, result.measures, built.joints, result.seam_prices)
         built_at = time.perf_counter()
         own = [place for place, panel in enumerate(panels) if panel.name in chosen]
         delivery = Delivery(

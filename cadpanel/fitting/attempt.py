@@ -125,6 +125,7 @@ class Attempts:
             stopped=fitted.stopped,
             outcomes=outcomes,
             prices=fitted.prices,
+            seam_prices=fitted.seam_prices,
             seconds=time.perf_counter() - self._began,
         )
 

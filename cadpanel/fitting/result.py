@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.measures.leans import leans
 from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
 from cadpanel.fitting.rules.rule import Outcome
@@ -30,7 +31,16 @@ _OF_GAPS = {
     "step": "the step of {allowed} is not met: {seam} has one of {found}",
     "shift": "the shift of {allowed} is not met: corners at {seam} lie {found} apart along it",
 }
+_OPTIONS = {"gap": "--gap-tolerance", "width": "--joint-tolerance", "step": "--step", "shift": "--shift"}
+# By how much more than it came out a gap is to be allowed, that a run which ends a little elsewhere holds it, too.
+_ROOM = 1.05
 _GIVES_WAY_FIRST = DriftAlong()
+
+
+def _above(gap: float) -> str:
+    """A little more than a gap, mm, rounded up to two digits."""
+    digit = 10.0 ** (np.floor(np.log10(_ROOM * gap)) - 1)
+    return f"{np.ceil(_ROOM * gap / digit) * digit:g}"
 
 
 def _broken(outcome: Outcome) -> str:
@@ -65,6 +75,7 @@ class FitResult:
             order: as long as the change is small, and the panels stay near where they are. By name: "gap", "width",
             "step" and "shift" a mm, limits by their settings' names a mm, degree or whole panel's length. Empty where
             not everything is held.
+        seam_prices: the same for one mm more of the gap, or of all its parts, at each seam alone; empty likewise.
         seconds: time of the fit, without the baselines.
     """
 
@@ -81,6 +92,7 @@ class FitResult:
     stopped: Stop
     outcomes: tuple[Outcome, ...]
     prices: Mapping[str, float]
+    seam_prices: tuple[float, ...]
     seconds: float
 
     @property
@@ -145,6 +157,7 @@ class FitResult:
         broken = [outcome for outcome in self.outcomes if not outcome.kept]
         if broken and keeps_limits(m, self.settings):
             return "; ".join(map(_broken, broken))
+        holds = self._would_hold() if missed else ""
         limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
         panel = int(np.argmax(limit.excess(m, most)))
         if not limit.kept(m, most)[panel]:
@@ -153,8 +166,29 @@ class FitResult:
         else:
             limit = _GIVES_WAY_FIRST
         # Where both are missed by far, no wider limit helps: the feature cannot follow.
-        advice = ("choose another feature, " if len(missed) > 1 else "") + f"allow a larger gap or {limit.remedy}"
-        return f"{', and '.join(missed)}; {advice}"
+        larger = f"allow a larger gap{holds if len(missed) == 1 else ''} or {limit.remedy}"
+        advice = ("choose another feature, " if len(missed) > 1 else "") + larger
+        return "; ".join([", and ".join(missed), advice, *map(_broken, broken)])
+
+    def _would_hold(self) -> str:
+        """What of gaps, a little wider than they came out, another run holds: this result does."""
+        found = {what: float(self.measures.gaps[what].max()) for what in self.settings.gaps}
+        wider = [
+            f"{_OPTIONS[what]} {_above(found[what])}" for what, most in self.settings.gaps.items() if found[what] > most
+        ]
+        return f" ({' '.join(wider)} would hold)" if wider else ""
+
+    def _leaning(self, seam: int) -> str:
+        """What to say of a seam whose flanges, fitted alone, meet in lines that lean too far from it."""
+        met = self.reference.seams[seam]
+        first, second = (self.local.shapes[i] for i in met.panels)
+        most = float(np.degrees(leans(first, second, met)).max(initial=0.0))
+        if most <= self.settings.seam_turn:
+            return ""
+        return (
+            f" (flanges fitted alone meet there in a line that leans by {most:.0f} degrees from the seam, where "
+            f"{self.settings.seam_turn:g} are allowed)"
+        )
 
     def _missed_gaps(self) -> list[str]:
         """What to say of the seam that exceeds most what is allowed of gaps or of one of their parts, if one does."""
@@ -168,4 +202,5 @@ class FitResult:
         a, b = (names[i] for i in self.reference.seams[worst].panels)
         of = gaps[what][worst]
         allowed = f"{of / over[what][worst]:.6g} mm"
-        return [_OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")]
+        said = _OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")
+        return [said + self._leaning(worst)]

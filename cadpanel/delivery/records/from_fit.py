@@ -170,15 +170,21 @@ def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
     )
 
 
-def seam_records(reference: Reference, measures: Measures, joints: Sequence[Joint]) -> tuple[SeamModel, ...]:
+def seam_records(
+    reference: Reference, measures: Measures, joints: Sequence[Joint], prices: Sequence[float] = ()
+) -> tuple[SeamModel, ...]:
     """Every seam; the panel that comes first in the file is named first, as its walk orders the corners.
 
     Args:
         reference: with the seams.
         measures: of their gaps and kinks.
         joints: of each, as `Built` has them.
+        prices: what each of them costs, see `FitResult.seam_prices`; empty where that is not known.
     """
-    return tuple(_seam(reference, seam, measures, index, joints[index]) for index, seam in enumerate(reference.seams))
+    return tuple(
+        _seam(reference, seam, measures, index, joints[index], prices[index] if prices else None)
+        for index, seam in enumerate(reference.seams)
+    )
 
 
 def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
@@ -191,7 +197,9 @@ def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
     return reference.panels[first].name, reference.panels[second].name
 
 
-def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint) -> SeamModel:
+def _seam(
+    reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint, price: float | None
+) -> SeamModel:
     order = np.argsort(seam.panels, kind="stable")
     first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
     gaps = measures.corner_gaps[index]
@@ -208,6 +216,7 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, join
         turn=float(np.degrees(measures.edge_turns[seam.panels, seam.edges].max())),
         unevenness=float(measures.uneven[index]),
         max_kink=float(np.degrees(measures.kink[index])),
+        price=price,
         plane=cut_model(joint.plane.point, (1.0 if order[0] == 0 else -1.0) * joint.plane.normal),
         joint=joint.own,
         recut=joint.recut,

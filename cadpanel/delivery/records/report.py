@@ -210,6 +210,8 @@ class SeamModel(Record):
         unevenness: how far the seam's corners lie off the middle between those before and after it, against the
             drawing, mm; 0 where a panel has no ends.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
+        price: by how much the RMS deviation of all panels, mm, would fall for one mm more of the gap, or of all its
+            parts, at this seam alone, to first order; None where nothing is held at its tolerance.
         plane: in the middle of the joint, its normal out of the first panel; None in reports from before there were
             joints.
         joint: clear width that was asked for of this seam alone, mm; None where it is that of all.
@@ -231,6 +233,7 @@ class SeamModel(Record):
     turn: NonNegative = 0.0
     unevenness: NonNegative = 0.0
     max_kink: NonNegative
+    price: NonNegative | None = None
     plane: CutModel | None = None
     joint: NonNegative | None = None
     recut: NonNegative | None = None

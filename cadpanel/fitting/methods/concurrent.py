@@ -113,8 +113,11 @@ def _hold_seams(
         found = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
         found = _tightened(problem, model, found, lost, starts[0], settings, progress)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
-    costs = prices(problem, named, found, settings.gaps | settings.allowed) if found.held else {}
-    return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), prices=costs)
+    if not found.held:
+        return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found))
+    costs, of_seams = prices(problem, named, found, settings.gaps | settings.allowed)
+    steps = iterations + found.iterations
+    return Fitted(found.unknowns, steps, stopped_as(found), prices=costs, seam_prices=tuple(of_seams.tolist()))
 
 
 def _tightened(

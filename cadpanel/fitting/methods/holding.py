@@ -97,7 +97,7 @@ def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]
 
 def prices(
     problem: Problem, named: Sequence[tuple[str, HeldTerm]], found: HeldSolution, allowed: Mapping[str, float]
-) -> dict[str, float]:
+) -> tuple[dict[str, float], Array]:
     """By how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first order.
 
     A multiplier w is the weight of |v|^2 / 2 that holds the vector v at its distance r: where all distances grow by a
@@ -108,21 +108,30 @@ def prices(
         named: what was held, in the order of the solution's multipliers, each with the name of what it holds.
         found: where it ended.
         allowed: of each name, in the units in which it is asked for.
+
+    Returns:
+        the falls by their names, and (seams,) those for one mm more of the gap, or of all its parts, at one seam alone.
     """
     state = problem.state(found.unknowns)
     rms = problem.rms(problem.deviation.cost(state))
     pulls: dict[str, float] = defaultdict(float)
+    seams = np.zeros(len(problem.met))
     for (name, term), weight in zip(named, found.end.multipliers, strict=True):
         weight = problem.areas[term.blocks[0]][:, None] * weight
         if isinstance(term, PartedGap):  # each part by its share of |v|^2
             for part, lengths in zip(term.parts, np.moveaxis(term.vectors(state), 2, 0), strict=True):
-                pulls[part] += float(np.sum(weight * lengths**2))
+                pull = weight * lengths**2
+                pulls[part] += float(np.sum(pull))
+                seams[term.seams.index] += pull.sum(axis=1) / allowed.get(part, np.inf)
         elif not term.hold.one_sided:
-            pulls[name] += float(np.sum(weight * term.hold.radius**2))
+            pull = weight * term.hold.radius**2
+            pulls[name] += float(np.sum(pull))
+            if name == "gap" and isinstance(term, CornerGap | ArcGap | MixedGap):
+                seams[term.seams.index] += pull.sum(axis=1) / allowed["gap"]
     if rms <= EXACT:
-        return dict.fromkeys(allowed, 0.0)
+        return dict.fromkeys(allowed, 0.0), np.zeros(len(seams))
     scale = problem.place.length / (problem.panels * rms)
-    return {name: scale * pulls[name] / most for name, most in allowed.items()}
+    return {name: scale * pulls[name] / most for name, most in allowed.items()}, scale * seams
 
 
 def held_within(

@@ -29,6 +29,14 @@ def test_one_seam_is_narrower_and_one_wider_than_all_others() -> None:
     assert [outcome.allowed for outcome in found.outcomes] == [0.3, 9.0]
 
 
+def test_a_seam_that_is_given_more_saves_what_its_price_tells() -> None:
+    tight, more = ruled(None, gap_tolerance=0.2), 0.05
+    found = ruled({"seam": [{"between": ["N 1", "N 2"], "gap": 0.2 + more}]}, gap_tolerance=0.2)
+    saved = tight.measures.overall_rms - found.measures.overall_rms
+    assert saved == pytest.approx(more * tight.seam_prices[0], rel=0.1)
+    assert tight.seam_prices[1] < 0.2 * tight.seam_prices[0]
+
+
 def test_a_part_that_is_held_nowhere_else_and_the_whole_gap_of_one_seam() -> None:
     found = ruled(
         {"seam": [{"between": ["N 1", "N 2"], "gap": 0.5}, {"between": ["N 2", "N 3"], "shift": 0.05}]},

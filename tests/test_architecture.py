@@ -214,6 +214,7 @@ THROUGH_A_DOOR = {
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",
     "cadpanel.fitting.rules.feature": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.level": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.lock": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.mirror": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.rule": "tests/fitting/rules/test_book.py",

@@ -32,6 +32,7 @@ from cadpanel.terms.outline import Limited, Pieces
 from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.rules.alike import AlikeTerm
+from cadpanel.terms.rules.heights import HeightTerm
 from cadpanel.terms.rules.mirrored import MirrorTerm
 from cadpanel.terms.rules.near import NearTerm
 from cadpanel.terms.seams import batches
@@ -47,7 +48,7 @@ ROUNDING = 1e-11
 
 
 HELD = (CornerGap, ArcGap, MixedGap, PartedGap, DriftTerm, TurnTerm, EvennessTerm, KinkTerm)
-RULES = (AlikeTerm, MirrorTerm, NearTerm)
+RULES = (AlikeTerm, HeightTerm, MirrorTerm, NearTerm)
 
 
 class Together:

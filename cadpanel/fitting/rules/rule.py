@@ -207,6 +207,24 @@ def places_of(words: Sequence[str], names: Sequence[str], rule: str) -> list[int
     return [place for place, name in enumerate(names) if name in found]
 
 
+def seams_between(words: Sequence[str], names: Sequence[str], seam_panels: IntArray, rule: str) -> BoolArray:
+    """(seams,) which seams lie between a panel that the first of two words means and one that the second means.
+
+    Raises:
+        SettingsError: a word means no panel, or no two such panels meet.
+    """
+    first, second = (np.isin(seam_panels, places_of([word], names, rule)) for word in words)
+    own: BoolArray = (first[:, 0] & second[:, 1]) | (first[:, 1] & second[:, 0])
+    if not own.any():
+        beside = np.unique(seam_panels[first.any(axis=1)])
+        near = ", ".join(f"'{names[i]}'" for i in beside[:3].tolist()) or "no other panel"
+        raise SettingsError(
+            f"the rule [{rule}] names the seam between '{words[0]}' and '{words[1]}', which do not meet; on seams of "
+            f"'{words[0]}' there are {near}"
+        )
+    return own
+
+
 def called(names: Sequence[str]) -> str:
     """A few names in a row."""
     shown = list(names) if len(names) <= 3 else [names[0], names[1], "...", names[-1]]

@@ -11,7 +11,7 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
-from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, places_of, words_of
+from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, seams_between, words_of
 from cadpanel.geometry.limits import WIDEST_JOINT
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
@@ -81,16 +81,7 @@ class SeamRule(Rule):
         return {part: value for part, value in found.items() if value is not None}
 
     def _seams(self, names: Sequence[str], seam_panels: IntArray) -> BoolArray:
-        first, second = (np.isin(seam_panels, places_of([word], names, self.table)) for word in self.between)
-        own: BoolArray = (first[:, 0] & second[:, 1]) | (first[:, 1] & second[:, 0])
-        if not own.any():
-            beside = [names[i] for pair in seam_panels for i in pair if first[(seam_panels == pair).all(axis=1)].any()]
-            near = ", ".join(f"'{name}'" for name in list(dict.fromkeys(beside))[:3]) or "no other panel"
-            raise SettingsError(
-                f"the rule [{self.table}] names the seam between '{self.between[0]}' and '{self.between[1]}', which do "
-                f"not meet; on seams of '{self.between[0]}' there are {near}"
-            )
-        return own
+        return seams_between(self.between, names, seam_panels, self.table)
 
 
 class _Allowed(Posed):

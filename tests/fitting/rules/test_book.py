@@ -18,6 +18,8 @@ feature = "plane-cylinder-plane"
 between = ["N 1", "N 2"]
 step = 1
 gap = 2.5
+[[level]]
+within = 1.5
 [[lock]]
 panels = ["N 2"]
 corners = [0, 3]

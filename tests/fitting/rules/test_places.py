@@ -1,9 +1,16 @@
 """Rules about where panels are: features, seams, locked corners, mirror images."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from cadpanel.arrays import Array
+from cadpanel.errors import SettingsError
 from cadpanel.fitting.rules.boundary import boundary_of
+from cadpanel.fitting.run import fit
+from cadpanel.fitting.settings import FitSettings
+from tests.known_panels import moved
 from tests.ruled import free, radii, ruled, strip
 
 
@@ -73,3 +80,27 @@ def test_a_panel_mirrors_another_to_its_arcs() -> None:
     assert np.abs(within - there).max() <= 0.1
     assert radii(found)[0] == pytest.approx(radii(found)[3], abs=1.0)
     assert abs(radii(free())[0] - radii(free())[3]) > 10.0
+
+
+def upright() -> Array:
+    """Turns the strip such that the seam in its middle is drawn level: its plane's normal, by least squares, is up."""
+    drawn = strip().panels[1].edges[1]
+    _, _, ways = np.linalg.svd(drawn - drawn.mean(axis=0))
+    return np.asarray(np.linalg.det(ways) * ways)
+
+
+def test_a_level_seam_is_at_the_height_at_which_it_is_drawn() -> None:
+    tower = moved(strip(), upright(), np.zeros(3))
+    rules: Any = {"level": [{"between": ["N 2", "N 3"], "within": 0.1}]}
+    heights = {}
+    for name, how in (("free", FitSettings(step=1.0)), ("level", FitSettings(step=1.0, rules=rules))):
+        result = fit(tower, how)
+        assert result.tolerance_met
+        ends = [boundary_of(result.shapes[panel])[:, 2] for panel in (1, 2)]
+        heights[name] = np.concatenate([ends[0][[4, 5, 6, 7, 11, 12, 13]], ends[1][[0, 1, 2, 3, 8, 9, 10]]])
+    assert np.ptp(heights["level"]) <= 0.1 < 0.2 < np.ptp(heights["free"])
+
+
+def test_a_strip_whose_seams_are_upright_has_none_that_are_level() -> None:
+    with pytest.raises(SettingsError, match="level in the drawing"):
+        ruled({"level": [{}]})

@@ -7,6 +7,7 @@ from cadpanel.features.patches import DIMENSIONS
 from cadpanel.fitting.rules.boundary import boundary_of, places_in
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.terms.rules.alike import HALF_ANGLE, RADIUS, AlikeTerm
+from cadpanel.terms.rules.heights import HeightTerm
 from cadpanel.terms.rules.mirrored import Images, MirrorTerm
 from cadpanel.terms.rules.near import NearTerm
 from tests.terms.models import DIFFERENCES, Together, case_of, jacobian_fault, mixed_case
@@ -39,6 +40,12 @@ def near(problem, panel=1):
     places = places_in(problem.layout, panel)
     count = len(places)
     return NearTerm(np.full(count, panel), places, np.ones((count, 3)), np.full(count, 0.1), problem.panels)
+
+
+def level(problem):
+    places = places_in(problem.layout, 1)
+    count = len(places)
+    return HeightTerm(np.full(count, 1), places, np.full(count, 0.3), np.full(count, 0.1), problem.place)
 
 
 def weighed(problem, term):

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
 from cadpanel.delivery.records.settings import ComparisonSettingsModel
@@ -19,6 +19,8 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 # Deviation in mm that is worth a line of its own.
 _WORTH_TELLING = 0.05
+# Degrees between neighbours above which the break is seen.
+_KINK_SEEN = 3.0
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5
 DASH = "-"
@@ -110,6 +112,9 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     traded = _traded(report)
     if traded:
         out.print(Text(traded))
+    kinked = _kinked(report)
+    if kinked:
+        out.print(Text(kinked))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]
@@ -162,6 +167,18 @@ def _dear_seams(report: ReportModel, dear: Sequence[str]) -> str:
 def counted_seams(count: int) -> str:
     """As a sentence goes on to their names."""
     return "the seam" if count == 1 else "the seams"
+
+
+def _kinked(report: ReportModel) -> str:
+    """The largest kink and its seam, where people see it: light breaks there."""
+    worst = max(report.seams, key=lambda seam: seam.max_kink, default=None)
+    if worst is None or worst.max_kink <= _KINK_SEEN:
+        return ""
+    first, second = worst.panels
+    return (
+        f"The largest kink, {worst.max_kink:.1f} degrees, is between '{first}' and '{second}'; light shows kinks of "
+        f"more than {_KINK_SEEN:g}. --max-kink holds them below a limit."
+    )
 
 
 def _bends(report: ReportModel) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import PanelModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.errors import SettingsError

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
 
@@ -15,6 +16,22 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]
+
+
+def _is_unit(vector: Vector) -> Vector:
+    """Refuse what has not the length 1.
+
+    Raises:
+        ValueError: saying so.
+    """
+    if not abs(math.hypot(*vector) - 1.0) <= UNIT:
+        raise ValueError(f"the direction {list(vector)} is not of length 1")
+    return vector
+
+
+UNIT = 1e-9
+"""By how much the length of a direction may differ from 1."""
+Direction = Annotated[Vector, AfterValidator(_is_unit)]
 
 
 class Record(BaseModel):
@@ -62,7 +79,7 @@ def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) ->
     except UnicodeDecodeError as error:
         raise DeliveryError(f"'{path}' is not {what}: it is not UTF-8 text (byte {error.start}).") from error
     try:
-        content = json.loads(text, parse_constant=_refuse_constant)
+        content = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_without_doubles)
         _check_schema(content, schema)
         return model.model_validate_json(text, strict=True)
     except ValidationError as error:
@@ -92,6 +109,16 @@ def write_json(record: Record, path: Path) -> None:
 
 def _refuse_constant(name: str) -> NoReturn:
     raise ValueError(f"it holds {name}, and only finite numbers are allowed")
+
+
+def _without_doubles(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """Refuse a key that stands twice: readers differ in which of the two they take."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        double = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f'the key "{double}" stands in it twice')
+    return found
 
 
 def _check_schema(content: object, schema: str) -> None:

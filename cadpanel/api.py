@@ -135,9 +135,13 @@ def fit(
         _require(time_limit, int | float, "a time limit is a number of seconds")
     if time_limit is not None and not time_limit > 0.0:
         raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
-    asked = _asked(settings, changes)
+    how = _asked(settings, changes)
     read_in = reference if isinstance(reference, Reference) else read(reference)
-    return api_result.FitResult.of(fit_reference(read_in, asked, progress, time_limit=time_limit))
+    if how.rules is not None and how.rules.unread:
+        from cadpanel.delivery.earlier import with_earlier
+
+        how = with_earlier(how, read_in)
+    return api_result.FitResult.of(fit_reference(read_in, how, progress, time_limit=time_limit))
 
 
 def compare(
@@ -346,7 +350,7 @@ def _build(
 
     sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
     if isinstance(panels, FitResult):
-        return build_panels(panels.shapes, sheet, panels.reference.seams).panels
+        return build_panels(panels.shapes, sheet, panels.reference.seams, None, panels.own_joints()).panels
     return build_panels([panels], sheet).panels
 
 

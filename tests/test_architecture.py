@@ -213,6 +213,7 @@ THROUGH_A_DOOR = {
     "cadpanel.delivery.meshes.proof": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.document.neighbours": "tests/freecad/test_freecad_document.py",
     "cadpanel.delivery.document.panels": "tests/freecad/test_freecad_document.py",
+    "cadpanel.delivery.earlier": "tests/cli/test_rules.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.pages.dimensions": "tests/delivery/pages/test_document.py",
     "cadpanel.delivery.pages.flat_view": "tests/delivery/pages/test_document.py",
@@ -223,6 +224,14 @@ THROUGH_A_DOOR = {
     "cadpanel.features.chain_shapes": "tests/features/test_panel_shapes.py",
     "cadpanel.fitting.methods.restarts": "tests/fitting/methods/test_laws.py",
     "cadpanel.fitting.outline": "tests/terms/limits/test_corner_drift.py",
+    "cadpanel.fitting.rules.feature": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.level": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.lock": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.mirror": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.rule": "tests/fitting/rules/test_book.py",
+    "cadpanel.fitting.rules.seam": "tests/fitting/rules/test_places.py",
+    "cadpanel.fitting.rules.shop": "tests/fitting/rules/test_radii.py",
+    "cadpanel.fitting.settling": "tests/fitting/rules/test_radii.py",
     "cadpanel.fitting.start.chains": "tests/fitting/test_every_feature.py",
     **{
         f"cadpanel.freecad.addon.{name}": "tests/freecad/test_freecad_addon.py"

@@ -128,6 +128,7 @@ ASKED = FitSettings(
     drift_across=0.015,
     min_radius=25.0,
     blend=(Blend(first=40.0, last=60.5, percent=True), Blend(first=500.0, last=900.0, panel="N 2")),
+    rules={"feature": [{"panels": "N 2", "feature": "plane-cylinder-plane"}]},  # type: ignore[arg-type] # as users may
     restarts=1,
     seed=7,
 )

@@ -103,12 +103,14 @@ def _run(
     _begin_to_read(file, how, shown)
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.fitting.run import fit as fit_reference
 
     began = time.perf_counter()
     reference = read_reference(file, how)
     seconds_to_read = time.perf_counter() - began
     chosen_panels([panel.name for panel in reference.panels], asked.shop.only)  # refused before the fit
+    settings = with_earlier(settings, reference)
     shown.begin(_FIRST)
     with first_interrupt_ends() as interrupted:
 

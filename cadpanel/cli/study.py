@@ -28,7 +28,7 @@ def study(
     reference: options.ReferenceFile,
     settings: Annotated[
         tuple[FitSettings, ...],
-        options.Without(("weights", "method")),
+        options.Without(("weights", "method", "rules")),
         options.Each({"feature": "--feature", "gap_tolerance": "--gap"}),
     ],
     how: Annotated[tuple[ReferenceSettings, ...], options.Each({"divide": "--divide"})],

@@ -36,7 +36,10 @@ _WORTH = {
     "evenness": ("0.1 % more unevenness", 0.1),
     "drift_along": ("1 % more drift along", 1.0),
     "drift_across": ("1 % more drift across", 1.0),
+    "drift_outline": ("0.1 % more drift of the outline", 0.1),
 }
+# Seams that are named for what they cost: as many as make up so much of it, or no more than these.
+_MOST_OF_IT, _MOST_SEAMS = 0.5, 3
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
 
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str]], ...] = (
@@ -105,6 +108,8 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     bends = _bends(report)
     if bends:
         out.print(Text(bends))
+    for line in _rules(report):
+        out.print(Text(line))
     traded = _traded(report)
     if traded:
         out.print(Text(traded))
@@ -142,6 +147,20 @@ def worst_lines(report: ReportModel) -> list[str]:
     return lines
 
 
+def _rules(report: ReportModel) -> Iterator[str]:
+    """What came of each rule; of those that hold no more than a few."""
+    shown = [rule for rule in report.rules if not rule.kept]
+    shown += [rule for rule in report.rules if rule.kept][:_MOST_NOTES]
+    for rule in shown:
+        unit = f" {rule.unit}" if rule.unit else ""
+        yield (
+            f"Rule {'held' if rule.kept else 'NOT held'}: {rule.rule}; {rule.measure} {rule.found:.3g}{unit}, at most "
+            f"{rule.allowed:.3g}{unit}."
+        )
+    if len(report.rules) > len(shown):
+        yield f"{counted(len(report.rules) - len(shown), 'more rule')} held, in {REPORT}."
+
+
 def _traded(report: ReportModel) -> str:
     """What the limits that cost most cost, in one line."""
     prices = {name: price * _WORTH[name][1] for name, price in report.solve.prices.items() if name in _WORTH}
@@ -149,7 +168,27 @@ def _traded(report: ReportModel) -> str:
     if not dear:
         return ""
     told = ", ".join(f"{prices[name]:.2f} mm for {_WORTH[name][0]}" for name in dear[:3])
-    return f"What limits cost: RMS deviation would fall at first by about {told}."
+    return f"What limits cost: RMS deviation would fall at first by about {told}.{_dear_seams(report, dear)}"
+
+
+def _dear_seams(report: ReportModel, dear: Sequence[str]) -> str:
+    """The seams on which most of the price of gaps falls, where it is one of those that are told."""
+    each = sorted(((seam.price or 0.0, seam.panels) for seam in report.seams), key=lambda one: -one[0])
+    whole = sum(price for price, _ in each)
+    if not set(dear[:3]) & set(report.settings.gaps) or whole <= 0.0:
+        return ""
+    shown, share = [], 0.0
+    for price, panels in each[:_MOST_SEAMS]:
+        shown.append("|".join(panels))
+        share += price / whole
+        if share >= _MOST_OF_IT:
+            break
+    return f" Of what gaps cost {100.0 * share:.0f} % falls on {counted_seams(len(shown))} {', '.join(shown)}."
+
+
+def counted_seams(count: int) -> str:
+    """As a sentence goes on to their names."""
+    return "the seam" if count == 1 else "the seams"
 
 
 def _kinked(report: ReportModel) -> str:

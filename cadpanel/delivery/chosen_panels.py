@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from difflib import get_close_matches
-from fnmatch import fnmatchcase
-from glob import escape
 
 from cadpanel.errors import SettingsError
+from cadpanel.reference.named import meant_by, near_names
 
 
 def chosen_panels(names: Sequence[str], only: Sequence[str]) -> tuple[str, ...]:
@@ -22,11 +20,9 @@ def chosen_panels(names: Sequence[str], only: Sequence[str]) -> tuple[str, ...]:
         return tuple(names)
     taken: set[str] = set()
     for word in only:
-        pattern = escape(word).replace("[*]", "*")  # no other sign stands for anything
-        fitting = {word} & set(names) or {name for name in names if fnmatchcase(name, pattern)}
+        fitting = meant_by(word, names)
         if not fitting:
-            alike = {name.casefold(): name for name in names}
-            near = get_close_matches(word.casefold(), alike, n=1) or list(alike)[:1]
-            raise SettingsError(f"there is no panel '{word}' to deliver; there is '{alike[near[0]]}', for example")
-        taken |= fitting
+            near = near_names(word, names, 1)[0]
+            raise SettingsError(f"there is no panel '{word}' to deliver; there is '{near}', for example")
+        taken |= set(fitting)
     return tuple(name for name in names if name in taken)

@@ -21,6 +21,7 @@ from cadpanel.delivery.records.from_fit import (
     origin_record,
     panel_records,
     reference_record,
+    rule_records,
     seam_records,
     solve_record,
     with_flat_parts,
@@ -93,11 +94,11 @@ def fill_delivery(
         baselines = baselines_record(result)
         tell("compare", 1, 1)
         compared_at = time.perf_counter()
-        built = build_panels(result.shapes, sheet, result.reference.seams, tell)
+        built = build_panels(result.shapes, sheet, result.reference.seams, tell, result.own_joints())
         parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
         panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
-        seams = seam_records(result.reference, result.measures, built.joints)
-        told = summary(result.measures, result.local, result.settings)
+        seams = seam_records(result.reference, result.measures, built.joints, result.seam_prices)
+        told = summary(result.measures, result.local, result.settings, result.outcomes)
         built_at = time.perf_counter()
         own = [place for place, panel in enumerate(panels) if panel.name in chosen]
         delivery = Delivery(
@@ -132,6 +133,7 @@ def fill_delivery(
         panels=panels,
         seams=proved.seams,
         features=dict(Counter(panel.feature for panel in panels)),
+        rules=rule_records(result),
         summary=told,
         baselines=baselines,
         certificate=proved.certificate,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and_centroid
@@ -69,9 +69,20 @@ class Built:
 
 
 def build_panels(
-    shapes: Sequence[Panel], sheet: SheetSettings, seams: Sequence[Seam] = (), progress: Progress | None = None
+    shapes: Sequence[Panel],
+    sheet: SheetSettings,
+    seams: Sequence[Seam] = (),
+    progress: Progress | None = None,
+    own_joints: Mapping[int, float] | None = None,
 ) -> Built:
     """Build the sheet and the skin of every panel, cut back from the seams.
+
+    Args:
+        shapes: as they were fitted.
+        sheet: thickness, joint and side.
+        seams: which of their edges meet.
+        progress: told of every panel.
+        own_joints: clear widths of single seams, by their places, mm.
 
     Raises:
         PanelError: a panel cannot be built; the message names it, the reason and the remedy.
@@ -80,7 +91,7 @@ def build_panels(
     tell("build", 0, len(shapes))
     straight = [shape.straightened() for shape in shapes]
     fitted = [one.shape for one in straight]
-    edges = seam_edges(shapes, seams)
+    edges = seam_edges(shapes, seams, own_joints or {})
     try:
         jointed = cut_to_seams(fitted, edges, sheet.joint, sheet_depth(sheet.thickness, sheet.skin_side))
         panels = _build_all(straight, jointed, sheet, tell)
@@ -92,15 +103,19 @@ def build_panels(
     return Built(panels=panels, joints=jointed.joints)
 
 
-def seam_edges(shapes: Sequence[Panel], seams: Sequence[Seam]) -> list[SeamEdges]:
-    """The seams of a reference by the names of edges that panels know."""
+def seam_edges(shapes: Sequence[Panel], seams: Sequence[Seam], own_joints: Mapping[int, float]) -> list[SeamEdges]:
+    """The seams of a reference by the names of edges that panels know, some with joints of their own, mm."""
 
     def edge(panel: int, number: int) -> str:
         return FOUR_EDGES[number] if shapes[panel].four_sided else f"edge {number}"
 
     return [
-        SeamEdges(panels=seam.panels, edges=(edge(seam.panels[0], seam.edges[0]), edge(seam.panels[1], seam.edges[1])))
-        for seam in seams
+        SeamEdges(
+            panels=seam.panels,
+            edges=(edge(seam.panels[0], seam.edges[0]), edge(seam.panels[1], seam.edges[1])),
+            joint=own_joints.get(place),
+        )
+        for place, seam in enumerate(seams)
     ]
 
 

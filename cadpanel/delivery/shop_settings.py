@@ -53,8 +53,8 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "outputs"),
             metavar="NAME,...",
-            help="What to write besides report.json: step, flats, schedule, setting-out, glb, html, freecad, xlsx, pdf, "
-            "ifc; all but the last three if not given.",
+            help="What to write besides report.json: step, flats, schedule, setting-out, glb, html, freecad, xlsx, "
+            "pdf, ifc; all but the last three if not given.",
         ),
     )
     only: str | Sequence[str] = setting(

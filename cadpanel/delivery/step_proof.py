@@ -84,6 +84,7 @@ def _expected_seam(seam: SeamModel, moved: dict[str, float]) -> ExpectedSeam:
         edges=seam.edges,
         gap=seam.max_seam_gap + sum(moved[name] for name in seam.panels),
         across=None if seam.plane is None else np.array(seam.plane.normal),
+        joint=seam.joint,
         clear=None if seam.clear is None else (seam.clear.least, seam.clear.largest),
     )
 

@@ -17,7 +17,9 @@ from cadpanel.fitting.methods.method import Fitted, Method
 from cadpanel.fitting.methods.trial import Trial
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.result import FitResult, Progress
+from cadpanel.fitting.rules.rule import Posed
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.settling import settle
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
@@ -44,19 +46,29 @@ class Attempts:
         """The panels with these features; see `fitting.problem.pose`."""
         return pose(self.reference, features, self.settings.blend)
 
+    def ruled(self, features: Sequence[PanelFeature]) -> tuple[Posed, ...]:
+        """The rules for single panels and seams, for panels with these features.
+
+        Raises:
+            SettingsError: a rule names what is not there, or has no meaning for a panel.
+        """
+        return () if self.settings.rules is None else self.settings.rules.pose(self.reference, features)
+
     def fit(self, features: Sequence[PanelFeature], after: FitResult | None = None) -> FitResult:
         """Fit panels that have these features, from their local fits, and from another fit of theirs if there is one.
 
         Raises:
             PanelError: a panel is nothing that its feature could approximate.
         """
+        rules = self.ruled(features)
         problem, starts = self.posed(features)
         alone = fit_local(problem, self.reference, starts, self.settings)
         if method_for(self.settings) == LOCAL:
-            return self._result(problem, alone.unknowns, alone)
+            return self._result(problem, alone.unknowns, alone, rules)
         if after is not None:
-            return self._together(problem, [alone.unknowns, after.unknowns, *starts], Concurrent(goes_on=True))
-        return self._together(problem, [alone.unknowns, *starts], method_for(self.settings))
+            begin = [alone.unknowns, after.unknowns, *starts]
+            return self._together(problem, begin, Concurrent(goes_on=True), rules)
+        return self._together(problem, [alone.unknowns, *starts], method_for(self.settings), rules)
 
     def fit_together(self, problem: Problem, alone: Array) -> FitResult:
         """Fit panels whose local fits (panels, size) are known.
@@ -84,12 +96,19 @@ class Attempts:
             method = Trial((lambda _: False) if closing else self._too_far)
         return self._together(problem, [alone], method)
 
-    def _together(self, problem: Problem, begin: Sequence[Array], method: Method) -> FitResult:
-        return self._result(problem, begin[0], method.fit(problem, begin, self.settings, self._tell))
+    def _together(
+        self, problem: Problem, begin: Sequence[Array], method: Method, rules: tuple[Posed, ...] = ()
+    ) -> FitResult:
+        posed = problem.ruled(rules) if rules else problem
+        fitted = method.fit(posed, begin, self.settings, self._tell)
+        if rules and not self.over:
+            fitted = settle(posed, fitted, begin, self.settings, self._tell)
+        return self._result(problem, begin[0], fitted, rules)
 
-    def _result(self, problem: Problem, alone: Array, fitted: Fitted) -> FitResult:
+    def _result(self, problem: Problem, alone: Array, fitted: Fitted, rules: tuple[Posed, ...] = ()) -> FitResult:
         how = self.settings
         measures = measure(panel_shapes(problem, fitted.unknowns), self.reference)
+        outcomes = tuple(rule.outcome(measures) for rule in rules)
         return FitResult(
             reference=self.reference,
             settings=how,
@@ -99,12 +118,14 @@ class Attempts:
             baselines=Baselines(
                 reference=self.reference, settings=how, problem=problem, alone=alone, measured={how.method: measures}
             ),
-            tolerance_met=keeps_limits(measures, how),
+            tolerance_met=keeps_limits(measures, how) and all(outcome.kept for outcome in outcomes),
             starts=fitted.starts,
             agreed=fitted.agreed,
             iterations=fitted.iterations,
             stopped=fitted.stopped,
+            outcomes=outcomes,
             prices=fitted.prices,
+            seam_prices=fitted.seam_prices,
             seconds=time.perf_counter() - self._began,
         )
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from itertools import islice, pairwise
+
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.edge_pieces import edge_pieces
 from cadpanel.features.layout import Layout
+from cadpanel.features.panel_edges import ARC_SHARES, Edge
 from cadpanel.fitting.start.begin import Start
 from cadpanel.reference.edge_planes import edge_planes, turned_edges
+from cadpanel.reference.free_edges import free_edges
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.strip import strips_of
-from cadpanel.terms.outline import Limited, Outline, Pieces
+from cadpanel.terms.outline import Limited, Line, Outline, Pieces
 from cadpanel.terms.state import State
 
 
@@ -44,7 +48,47 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
         across=across.limited(),
         sided=sided,
         pieces=_pieces(reference, layout, begin),
+        line=_line(reference, layout, begin),
     )
+
+
+# Where on a straight free edge, and on a straight piece of another one, it is held to the drawn one: shares of lengths.
+_ON_STRAIGHT, _ON_PIECE = np.linspace(0.0, 1.0, 9), np.linspace(0.0, 1.0, 5)
+
+
+def _line(reference: Reference, layout: Layout, begin: Start) -> Line:
+    """Points of all free edges, and the drawn ones."""
+    free = free_edges(reference)
+    padded = max(group.feature.corner_count for group in layout.groups)
+    edges = [layout.feature_of[i].edges[e] for i, e in zip(free.panels.tolist(), free.edges.tolist(), strict=True)]
+    rows = [_held_points(edge, padded) for edge in edges]
+    most = max(map(len, rows), default=1)
+    # One that has fewer points than another holds its last one several times.
+    points = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows]).reshape(-1, most, 3)
+    straight = np.array([edge.straight for edge in edges], dtype=bool)
+    drawn = (free.lines - begin.origins[free.panels][:, None]) @ begin.axes[free.panels] / begin.length
+    return Line(
+        panels=free.panels,
+        places=points[..., :2].astype(np.intp),
+        shares=points[..., 2],
+        drawn=drawn,
+        straight=straight,
+    )
+
+
+def _held_points(edge: Edge, padded: int) -> list[tuple[float, float, float]]:
+    """Between which two points of the boundary each point of an edge lies, and how far on the way."""
+    if edge.straight:
+        return [(float(edge.corners[0]), float(edge.corners[-1]), share) for share in _ON_STRAIGHT.tolist()]
+    found: list[tuple[float, float, float]] = []
+    arcs = iter(edge.arcs)
+    for (first, second), curved in zip(pairwise(edge.corners), edge.curved, strict=True):
+        if curved:
+            found += [(padded + arc, padded + arc, 0.0) for arc in islice(arcs, len(ARC_SHARES))]
+            found += [(first, first, 0.0), (second, second, 0.0)]
+        else:
+            found += [(first, second, share) for share in _ON_PIECE.tolist()]
+    return found
 
 
 def _pieces(reference: Reference, layout: Layout, begin: Start) -> Pieces:

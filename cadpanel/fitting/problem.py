@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,6 +15,8 @@ from cadpanel.fitting.bends.asked import Blend
 from cadpanel.fitting.bends.taken import allowed_patches, check_blends, stretches
 from cadpanel.fitting.bounds import natural_bounds
 from cadpanel.fitting.outline import outline_of
+from cadpanel.fitting.rules.bends import NUMBERS, numbers_of
+from cadpanel.fitting.rules.rule import Bends, Posed
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.start.begin import Start, start
@@ -52,6 +54,7 @@ class Problem:
         pairs: (pairs, 2) coupled panels.
         bounds: (panels, size) least and greatest unknowns.
         across: the lines that go on across seams.
+        rules: for single panels.
     """
 
     names: tuple[str, ...]
@@ -65,6 +68,7 @@ class Problem:
     pairs: IntArray
     bounds: tuple[Array, Array]
     across: AcrossSeams
+    rules: tuple[Posed, ...] = ()
 
     @property
     def pair_of(self) -> IntArray:
@@ -115,7 +119,37 @@ class Problem:
     def named_limits(self, settings: FitSettings, margin: float = 0.0) -> list[tuple[str, HeldTerm]]:
         """The same, each with the name of the limit that it holds."""
         allowed = settings.allowed
-        return [(limit.name, term) for limit in LIMITS for term in limit.held(self, allowed, margin)]
+        limits = [(limit.name, term) for limit in LIMITS for term in limit.held(self, allowed, margin)]
+        if not self.rules:
+            return limits
+        pair_of = {(int(one), int(other)): pair for pair, (one, other) in enumerate(self.pairs)}
+        return limits + [("rules", term) for rule in self.rules for term in rule.held(self, pair_of)]
+
+    def gaps(self, settings: FitSettings) -> Mapping[str, float | Array]:
+        """What is allowed of gaps and their parts, mm; of every seam (seams,) where rules say so."""
+        return settings.gaps_of(self.names, np.array([seam.panels for seam in self.met]).reshape(-1, 2))
+
+    def ruled(self, rules: Sequence[Posed]) -> Problem:
+        """The same panels under rules, some of which couple panels that do not meet."""
+        links = np.concatenate([self.pairs, *(rule.links for rule in rules)])
+        _, first = np.unique(links, axis=0, return_index=True)
+        return replace(self, rules=tuple(rules), pairs=links[np.sort(first)])
+
+    def fixed(self, bends: Bends, unknowns: Array) -> Problem:
+        """The same panels with some radii and half angles fixed, which bend as they do at unknowns (panels, size)."""
+        lower, upper = (bound.copy() for bound in self.bounds)
+        for panel in np.flatnonzero(bends.held.any(axis=(1, 2))).tolist():
+            feature = self.layout.feature_of[panel]
+            values = feature.expand(unknowns[panel : panel + 1, : len(feature.free)])[0]
+            signs = [np.sign(values[number]) for number in numbers_of(feature, NUMBERS[0]) if number is not None]
+            for what, unit in zip(range(len(NUMBERS)), (self.place.length, 1.0), strict=True):
+                for bend, number in enumerate(numbers_of(feature, NUMBERS[what])):
+                    if number in feature.free and number is not None and bends.held[panel, bend, what]:
+                        one = feature.numbers[number]
+                        value = np.clip(signs[bend] * bends.values[panel, bend, what] / unit, one.lower, one.upper)
+                        column = np.searchsorted(feature.free, number)
+                        lower[panel, column] = upper[panel, column] = value
+        return replace(self, bounds=(lower, upper))
 
     def take(self, panels: IntArray) -> Problem:
         """The same problem for some of its panels, without their seams."""

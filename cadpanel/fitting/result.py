@@ -10,8 +10,10 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
+from cadpanel.fitting.measures.leans import leans
 from cadpanel.fitting.measures.obliqueness import too_oblique
-from cadpanel.fitting.measures.verdict import limits_of
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
+from cadpanel.fitting.rules.rule import Outcome
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.near import near_names
@@ -30,7 +32,25 @@ _OF_GAPS = {
     "step": "the step of {allowed} is not met: {seam} has one of {found}",
     "shift": "the shift of {allowed} is not met: corners at {seam} lie {found} apart along it",
 }
+_OPTIONS = {"gap": "--gap-tolerance", "width": "--joint-tolerance", "step": "--step", "shift": "--shift"}
+# By how much more than it came out a gap is to be allowed, that a run which ends a little elsewhere holds it, too.
+_ROOM = 1.05
 _GIVES_WAY_FIRST = DriftAlong()
+
+
+def _above(gap: float) -> str:
+    """A little more than a gap, mm, rounded up to two digits."""
+    digit = 10.0 ** (np.floor(np.log10(_ROOM * gap)) - 1)
+    return f"{np.ceil(_ROOM * gap / digit) * digit:g}"
+
+
+def _broken(outcome: Outcome) -> str:
+    """What to say of a rule that does not hold."""
+    unit = f" {outcome.unit}" if outcome.unit else ""
+    return (
+        f"the rule '{outcome.rule}' does not hold: {outcome.measure} {outcome.found:.4g}{unit}, where "
+        f"{outcome.allowed:.4g}{unit} are allowed; allow wider gaps, or leave the rule out"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,15 +65,18 @@ class FitResult:
         unknowns: (panels, size) the solver's numbers of the shapes, from which a fit of the same panels with the same
             features may go on.
         baselines: what it is held against, fitted and measured when `local` or `two_stage` is first asked for.
-        tolerance_met: whether every gap is within the tolerance, every limit kept and, where features are
-            chosen automatically, every deviation within the largest; with weights only the deviation has one to miss.
+        tolerance_met: whether every gap is within the tolerance, every limit and every rule kept and, where features
+            are chosen automatically, every deviation within the largest; with weights only the deviation has one to
+            miss.
         starts, agreed: how many starts were made, and how many ended within 1 % of the best.
         iterations: linear systems solved for this result.
         stopped: why no better result was looked for.
+        outcomes: what was measured of each rule for single panels and seams.
         prices: by how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first
             order: as long as the change is small, and the panels stay near where they are. By name: "gap", "width",
             "step" and "shift" a mm, limits by their settings' names a mm, degree or whole panel's length. Empty where
             not everything is held.
+        seam_prices: the same for one mm more of the gap, or of all its parts, at each seam alone; empty likewise.
         seconds: time of the fit, without the baselines.
     """
 
@@ -68,7 +91,9 @@ class FitResult:
     agreed: int
     iterations: int
     stopped: Stop
+    outcomes: tuple[Outcome, ...]
     prices: Mapping[str, float]
+    seam_prices: tuple[float, ...]
     seconds: float
 
     @property
@@ -113,6 +138,12 @@ class FitResult:
             f"gaps up to {self.measures.max_seam_gap:.2f} mm, RMS deviation {self.measures.overall_rms:.2f} mm>"
         )
 
+    def own_joints(self) -> dict[int, float]:
+        """Clear widths of the joints of single seams that rules ask for, by their places, mm."""
+        if self.settings.rules is None:
+            return {}
+        return self.settings.rules.joints([shape.name for shape in self.shapes], self.measures.seam_panels)
+
     def shortfall(self) -> str | None:
         """None if the tolerance and all limits hold, else one sentence on the worst seam or panel, and why it ended."""
         missed = self._missed()
@@ -140,6 +171,10 @@ class FitResult:
                 "more, allow wider gaps, or divide it further"
             )
         missed = self._missed_gaps()
+        broken = [outcome for outcome in self.outcomes if not outcome.kept]
+        if broken and keeps_limits(m, self.settings):
+            return "; ".join(map(_broken, broken))
+        holds = self._would_hold() if missed else ""
         limit, most = max(limits_of(self.settings), key=lambda one: float(one[0].excess(m, one[1]).max()))
         panel = int(np.argmax(limit.excess(m, most)))
         if not limit.kept(m, most)[panel]:
@@ -148,17 +183,41 @@ class FitResult:
         else:
             limit = _GIVES_WAY_FIRST
         # Where both are missed by far, no wider limit helps: the feature cannot follow.
-        advice = ("choose another feature, " if len(missed) > 1 else "") + f"allow a larger gap or {limit.remedy}"
-        return f"{', and '.join(missed)}; {advice}"
+        larger = f"allow a larger gap{holds if len(missed) == 1 else ''} or {limit.remedy}"
+        advice = ("choose another feature, " if len(missed) > 1 else "") + larger
+        return "; ".join([", and ".join(missed), advice, *map(_broken, broken)])
+
+    def _would_hold(self) -> str:
+        """What of gaps, a little wider than they came out, another run holds: this result does."""
+        found = {what: float(self.measures.gaps[what].max()) for what in self.settings.gaps}
+        wider = [
+            f"{_OPTIONS[what]} {_above(found[what])}" for what, most in self.settings.gaps.items() if found[what] > most
+        ]
+        return f" ({' '.join(wider)} would hold)" if wider else ""
+
+    def _leaning(self, seam: int) -> str:
+        """What to say of a seam whose flanges, fitted alone, meet in lines that lean too far from it."""
+        met = self.reference.seams[seam]
+        first, second = (self.local.shapes[i] for i in met.panels)
+        most = float(np.degrees(leans(first, second, met)).max(initial=0.0))
+        if most <= self.settings.seam_turn:
+            return ""
+        return (
+            f" (flanges fitted alone meet there in a line that leans by {most:.0f} degrees from the seam, where "
+            f"{self.settings.seam_turn:g} are allowed)"
+        )
 
     def _missed_gaps(self) -> list[str]:
         """What to say of the seam that exceeds most what is allowed of gaps or of one of their parts, if one does."""
-        gaps = self.measures.gaps
-        over = {what: float((gaps[what] / most).max(initial=0.0)) for what, most in self.settings.gaps.items()}
-        what = max(over, key=lambda one: over[one])
-        if over[what] <= 1.0:
+        gaps, names = self.measures.gaps, [panel.name for panel in self.reference.panels]
+        asked = self.settings.gaps_of(names, self.measures.seam_panels)
+        over = {what: gaps[what] / most for what, most in asked.items()}
+        what = max(over, key=lambda one: float(over[one].max(initial=0.0)))
+        if over[what].max(initial=0.0) <= 1.0:
             return []
-        worst = int(gaps[what].argmax())
-        a, b = (self.reference.panels[i].name for i in self.reference.seams[worst].panels)
-        allowed, of = f"{self.settings.gaps[what]:g} mm", gaps[what][worst]
-        return [_OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")]
+        worst = int(over[what].argmax())
+        a, b = (names[i] for i in self.reference.seams[worst].panels)
+        of = gaps[what][worst]
+        allowed = f"{of / over[what][worst]:.6g} mm"
+        said = _OF_GAPS[what].format(allowed=allowed, seam=f"the seam between '{a}' and '{b}'", found=f"{of:.2f} mm")
+        return [said + self._leaning(worst)]

@@ -42,7 +42,8 @@ def fit(
     attempts = Attempts(reference, how, progress, time_limit)
     if how.automatic:
         return fit_automatically(attempts)
-    return attempts.fit([how.feature_for(len(panel.edges)) for panel in reference.panels], after)
+    names, corners = zip(*((panel.name, len(panel.edges)) for panel in reference.panels), strict=True)
+    return attempts.fit(how.features_for(names, corners), after)
 
 
 def _require_alike(reference: Reference, how: FitSettings, after: FitResult) -> None:

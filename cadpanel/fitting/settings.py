@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypedDict, get_args
+from pathlib import Path
+from typing import Any, Literal, TypedDict, get_args
 
 import numpy as np
 
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO, Tilt, for_corners
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend, blends_of
+from cadpanel.fitting.rules.book import Rules, rules_of
 from cadpanel.setting import Option, Range, check_ranges, require, setting
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong
@@ -19,6 +22,7 @@ from cadpanel.terms.limits.evenness import Evenness
 from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import limit_setting
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.outline_drift import DriftOutline
 from cadpanel.terms.limits.seam_turn import SeamTurn
 from cadpanel.terms.parts import PARTS
 
@@ -114,9 +118,11 @@ class FitSettings:
         max_kink: degrees between neighbouring skins across a seam; 180 for any.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
+        drift_outline: how far the free outline may leave the drawn one anywhere, square to it; 0.5 for any.
         blend: which stretch across the panels becomes their curved patches, where that is not to be told by the
             surface's normals: "410-540" (mm from side 0), "40-55%", "NW-03=410-540" for one panel, or several of these.
         min_radius: mm, the tightest that the shop can roll; no cone or cylinder gets tighter anywhere.
+        rules: for single panels and seams, see `fitting.rules`; the name of a TOML file, or what it would hold.
         restarts: further starts from perturbed local fits; the best result counts.
         seed: of the perturbations.
     """
@@ -158,6 +164,7 @@ class FitSettings:
     max_kink: float = limit_setting(Kink)
     drift_along: float = limit_setting(DriftAlong)
     drift_across: float = limit_setting(DriftAcross)
+    drift_outline: float = limit_setting(DriftOutline)
     min_radius: float = limit_setting(MinRadius)
     blend: tuple[Blend, ...] = setting(
         (),
@@ -166,6 +173,15 @@ class FitSettings:
             metavar="[PANEL=]FROM-TO[%]",
             help="Stretch across the panels, mm from side 0, to become the bend; may be repeated, for one panel each.",
             told=False,
+        ),
+    )
+    rules: Rules | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: rules_of(text),
+            metavar="FILE",
+            help="TOML file with rules for single panels and seams: features, locks, equal radii, tools.",
         ),
     )
     restarts: int = setting(
@@ -206,8 +222,21 @@ class FitSettings:
         object.__setattr__(self, "blend", blends_of(self.blend))
         if self.blend and self.automatic:
             raise SettingsError(f"with the feature '{AUTO}' it is not known which panels have a blend: name a feature")
+        object.__setattr__(self, "rules", rules_of(self.rules))
+        self._check_rules()
         if self.weights is not None and self.method == "local":
             raise SettingsError("the local method fits each panel alone and takes no weights; leave one of the two out")
+
+    def _check_rules(self) -> None:
+        if self.rules is None:
+            return
+        if self.automatic:
+            raise SettingsError(f"rules are for panels whose features are named: leave out the feature '{AUTO}'")
+        if self.rules.of_fit and (self.weights is not None or self.method != "concurrent"):
+            raise SettingsError(
+                "all rules but [[feature]] are held while all panels are fitted at once within tolerances: leave out "
+                "the weights, or the method"
+            )
 
     @property
     def allowed(self) -> dict[str, float]:
@@ -223,6 +252,15 @@ class FitSettings:
         parts = {part: usually if value is None else value for part, value, usually in asked}
         held = {} if whole is None else {"gap": whole}
         return held | {part: value for part, value in parts.items() if value < (np.inf if whole is None else whole)}
+
+    def gaps_of(self, names: Sequence[str], seam_panels: IntArray) -> Mapping[str, float | Array]:
+        """The same where rules allow single seams more or less; then of every seam (seams,).
+
+        Args:
+            names: of the panels.
+            seam_panels: (seams, 2) which panels meet.
+        """
+        return self.gaps if self.rules is None else self.rules.gaps(self.gaps, names, seam_panels)
 
     @property
     def widest_gap(self) -> float:
@@ -244,6 +282,14 @@ class FitSettings:
         if isinstance(self.feature, str):
             return for_corners(self.feature, tilt=self.tilt)(corners)
         return self.feature
+
+    def features_for(self, names: Sequence[str], corners: Sequence[int]) -> list[PanelFeature]:
+        """The feature of every panel, by its name and how many corners it has."""
+        own = {} if self.rules is None else self.rules.features(names)
+        return [
+            for_corners(own[place], tilt=self.tilt)(count) if place in own else self.feature_for(count)
+            for place, count in enumerate(corners)
+        ]
 
 
 def _require_weights(value: object) -> None:
@@ -272,7 +318,9 @@ class FitKeywords(TypedDict, total=False):
     max_kink: float
     drift_along: float
     drift_across: float
+    drift_outline: float
     min_radius: float
     blend: str | Blend | Sequence[str | Blend]
+    rules: str | Path | Mapping[str, Any] | Rules | None
     restarts: int
     seed: int

@@ -17,10 +17,19 @@ STEEPEST_WALL = np.sin(np.radians(10.0))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeamEdges:
-    """Two panels that meet: their places in a list, and the edge of each, "end 1" or "edge 3"."""
+    """Two panels that meet: their places in a list, and the edge of each, "end 1" or "edge 3".
+
+    Attributes:
+        joint: clear width between the two sheets, mm, where it is another than that of all.
+    """
 
     panels: tuple[int, int]
     edges: tuple[str, str]
+    joint: float | None = None
+
+    def width(self, of_all: float) -> float:
+        """The clear width of its joint where all others have `of_all`, mm."""
+        return of_all if self.joint is None else self.joint
 
 
 def seam_plane(panels: tuple[Panel, Panel], edges: tuple[str, str]) -> CutPlane:

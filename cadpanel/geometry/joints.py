@@ -20,11 +20,13 @@ class Joint:
 
     Attributes:
         plane: in the middle of the joint, the normal out of the seam's first panel.
+        own: clear width that was asked for of this seam alone, mm; None where it is that of all.
         recut: how far from it the farthest corner of the two edges was, mm: so far, at most, the fit's edges were moved
             to lie in one plane.
     """
 
     plane: CutPlane
+    own: float | None
     recut: float
 
 
@@ -42,7 +44,7 @@ def cut_to_seams(shapes: Sequence[Panel], seams: Sequence[SeamEdges], joint: flo
     Args:
         shapes: as they were fitted.
         seams: which of their edges meet.
-        joint: clear width between two sheets, mm.
+        joint: clear width between two sheets, mm, at seams that have none of their own.
         depth: the other face of a sheet is `offset(depth)`, mm.
 
     Raises:
@@ -55,6 +57,7 @@ def cut_to_seams(shapes: Sequence[Panel], seams: Sequence[SeamEdges], joint: flo
     joints = tuple(
         Joint(
             plane=plane,
+            own=seam.joint,
             recut=max(farthest(plane, shapes[i], edge) for i, edge in zip(seam.panels, seam.edges, strict=True)),
         )
         for seam, plane in zip(seams, planes, strict=True)
@@ -72,9 +75,9 @@ def seam_planes(shapes: Sequence[Panel], seams: Sequence[SeamEdges]) -> tuple[Cu
 
 
 def walls_of(count: int, seams: Sequence[SeamEdges], planes: Sequence[CutPlane], joint: float) -> list[Walls]:
-    """The walls of each of `count` panels by its edges: half a joint behind the seams' planes."""
+    """The walls of each of `count` panels by its edges: half a joint, or half their own, behind the seams' planes."""
     walls: list[Walls] = [{} for _ in range(count)]
     for seam, plane in zip(seams, planes, strict=True):
         for panel, edge, own in zip(seam.panels, seam.edges, (plane, turned_round(plane)), strict=True):
-            walls[panel][edge] = own.moved(-0.5 * joint)
+            walls[panel][edge] = own.moved(-0.5 * seam.width(joint))
     return walls

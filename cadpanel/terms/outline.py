@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.terms.state import State
 
@@ -47,6 +49,34 @@ class Pieces:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Line:
+    """f edges on no seam: points of them, and where they are drawn.
+
+    Attributes:
+        panels: (f,) whose.
+        places: (f, m, 2) each point lies between two points of the panel's boundary, see `State.boundary`.
+        shares: (f, m) how far on the way from the first to the second.
+        straight: (f,) whether an edge is one segment.
+        drawn: (f, r, 3) the drawn lines in the panels' own frames and the solver's length.
+    """
+
+    panels: IntArray
+    places: IntArray
+    shares: Array
+    straight: BoolArray
+    drawn: Array
+
+
+NO_LINE = Line(
+    panels=np.zeros(0, dtype=np.intp),
+    places=np.zeros((0, 1, 2), dtype=np.intp),
+    shares=np.zeros((0, 1)),
+    straight=np.zeros(0, dtype=bool),
+    drawn=np.zeros((0, 2, 3)),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Outline:
     """The reference's corners as the drift limits see them.
 
@@ -63,6 +93,7 @@ class Outline:
             from its sides has only these, and they are its whole drift.
         sided: (panels,) whether ends can be told from sides.
         pieces: of the edges whose turn is limited.
+        line: the free outline; of some panels taken by themselves it is not known.
     """
 
     corners: Array
@@ -70,6 +101,7 @@ class Outline:
     across: Limited
     sided: BoolArray
     pieces: Pieces
+    line: Line = NO_LINE
 
     def take(self, panels: IntArray) -> Outline:
         """The outlines of some panels, with as many corners as the largest of them has: every corner is limited."""

@@ -31,23 +31,27 @@ class PartedGap(HeldTerm):
     """
 
     def __init__(
-        self, gap: OutermostGap | MixedGap, state: State, allowed: Mapping[str, float], *, share: float = 1.0
+        self, gap: OutermostGap | MixedGap, state: State, allowed: Mapping[str, float | Array], *, share: float = 1.0
     ) -> None:
         """Look at a gap in the directions of a state.
 
         Args:
             gap: whose vectors are looked at.
             state: where.
-            allowed: by part, in units of the solver's length; what is not in it is not held, and one of the gap's is.
+            allowed: by part, in units of the solver's length, of every seam (seams,) or one for all; what is not in it
+                is not held, and one of the gap's is.
             share: of what is allowed, to hold.
         """
         self.gap, self.seams = gap, gap.seams
         self.blocks, self.pair, self.panels = gap.blocks, gap.pair, gap.panels
         self.parts = tuple(part for part in PARTS[: gap.parts] if part in allowed)
-        least = min(allowed[part] for part in self.parts)
-        self._scale = np.array([least / allowed[part] for part in self.parts])[:, None]
+        count = len(gap.seams.index)
+        most = np.stack([np.broadcast_to(allowed[part], count) for part in self.parts], axis=1)
+        least = most.min(axis=1, keepdims=True)
+        self._scale = (least / most)[:, None, :, None]
         self.straighten(state)
-        self.hold = Hold(np.full(gap.hold.radius.shape, share * least), weight=0.0, gives_way=True)
+        radius = np.broadcast_to(share * least, gap.hold.radius.shape).copy()
+        self.hold = Hold(radius, weight=0.0, gives_way=True)
 
     def straighten(self, state: State) -> None:
         """From now on look in the directions of this state."""

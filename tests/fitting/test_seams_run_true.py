@@ -113,3 +113,4 @@ def test_what_is_held_has_a_price_and_the_rest_has_none(held: str) -> None:
     assert result.prices[held] > 0.05
     assert result.prices["min_radius"] == 0.0
     assert set(result.prices) == set(result.settings.gaps) | set(result.settings.allowed)
+    assert sum(result.seam_prices) == pytest.approx(sum(result.prices[part] for part in result.settings.gaps))

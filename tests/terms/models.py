@@ -31,6 +31,10 @@ from cadpanel.terms.limits.seam_turn import TurnTerm
 from cadpanel.terms.outline import Limited, Pieces
 from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.rows import Rows
+from cadpanel.terms.rules.alike import AlikeTerm
+from cadpanel.terms.rules.heights import HeightTerm
+from cadpanel.terms.rules.mirrored import MirrorTerm
+from cadpanel.terms.rules.near import NearTerm
 from cadpanel.terms.seams import batches
 from cadpanel.terms.state import State
 from cadpanel.terms.term import HeldTerm, Term
@@ -44,6 +48,7 @@ ROUNDING = 1e-11
 
 
 HELD = (CornerGap, ArcGap, MixedGap, PartedGap, DriftTerm, TurnTerm, EvennessTerm, KinkTerm)
+RULES = (AlikeTerm, HeightTerm, MirrorTerm, NearTerm)
 
 
 class Together:
@@ -65,7 +70,7 @@ class Together:
             if isinstance(part, Deviation):
                 weighted = part.roots * part.distances(state, held=True)[0]
                 found += [weighted[group.panels].reshape(-1) for group in state.layout.groups]
-            if isinstance(part, HELD):
+            if isinstance(part, HELD + RULES):
                 found.append((np.sqrt(part.hold.weight)[..., None] * part.vectors(state)).reshape(-1))
         return np.concatenate(found)
 

@@ -66,7 +66,7 @@ def clearances(
             continue
         clear = _between(first, second, seam.across)
         found.append(clear)
-        failures += _faults(seam, clear, joint)
+        failures += _faults(seam, clear, joint if seam.joint is None else seam.joint)
     return found
 
 

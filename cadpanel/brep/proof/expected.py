@@ -80,6 +80,7 @@ class ExpectedSeam:
         gap: the gap along the whole seam that the report states, mm; None to measure only.
         across: (3,) a way across the joint, from the first panel to the second: that between them lies a layer of space
             square to it is then seen in the files; None where only the walls tell.
+        joint: clear width that was asked for, mm; None where it is that of all.
         clear: the least and the largest clear width of the joint that the report states, mm; None to measure only.
     """
 
@@ -87,6 +88,7 @@ class ExpectedSeam:
     edges: tuple[str, str]
     gap: float | None = None
     across: Array | None = None
+    joint: float | None = None
     clear: tuple[float, float] | None = None
 
     @property

@@ -7,17 +7,18 @@ summary is the worst of its panels and seams can.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.delivery.records.shape_checks import shape_faults
 from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
 from cadpanel.features.catalogue import AUTO
+from cadpanel.fitting.rules.book import Rules, rules_of
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.shape import edge_corners
 from cadpanel.geometry.sheet_checks import sheet_depth
@@ -43,6 +44,8 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
         certificate: what the files beside it show now.
     """
     panels = {panel.name: panel for panel in report.panels}
+    rules = rules_of(report.settings.rules)
+    given = {} if rules is None else rules.features([panel.name for panel in report.panels])
     sheet = report.settings.sheet()
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
     failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
@@ -51,11 +54,13 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     if report.features != counted:
         failures.append(f"The report counts {report.features} panels by feature, its list has {dict(counted)}.")
     failures += [
-        f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
-        for panel in report.panels
-        if panel.feature != report.settings.feature != AUTO
+        f"Panel '{panel.name}': the report calls it {panel.feature}, {asked} was asked for."
+        for place, panel in enumerate(report.panels)
+        for asked in [given.get(place, report.settings.feature)]
+        if panel.feature != asked != AUTO
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
+    failures += _joint_faults(report, rules)
     failures += _summary_faults(report, depth)
     failures += _certificate_faults(report.certificate, certificate)
     return tuple(failures)
@@ -135,6 +140,22 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
         yield f"{name}: the largest corner gap in the report is {seam.max_corner_gap:.6g} mm, not {gaps.max():.6g}."
 
 
+def _joint_faults(report: ReportModel, rules: Rules | None) -> Iterator[str]:
+    """Joints of single seams that the list of seams calls asked for, and the rules do not."""
+    own = {} if rules is None else rules.joints([panel.name for panel in report.panels], _seam_panels(report))
+    for place, seam in enumerate(report.seams):
+        if seam.joint != own.get(place):
+            yield (
+                f"Seam '{seam.panels[0]}' to '{seam.panels[1]}': its own joint of {seam.joint} mm is not the one of "
+                f"{own.get(place)} mm that the rules ask for."
+            )
+
+
+def _seam_panels(report: ReportModel) -> IntArray:
+    places = {panel.name: place for place, panel in enumerate(report.panels)}
+    return np.array([[places[name] for name in seam.panels] for seam in report.seams], dtype=np.intp).reshape(-1, 2)
+
+
 def _fitted(panel: PanelModel) -> Array:
     """The panel's corners as the fit had them, in rows."""
     return np.array(panel.corners if panel.fitted is None else panel.fitted.corners)
@@ -187,33 +208,65 @@ _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
     "max_corner_drift": lambda panel: panel.max_corner_drift,
     "max_drift_along": lambda panel: panel.max_drift_along,
     "max_free_edge_drift": lambda panel: panel.max_free_edge_drift,
+    "max_outline_drift": lambda panel: panel.outline_drift,
+}
+
+
+def _rule_faults(report: ReportModel) -> Iterator[str]:
+    for rule in report.rules:
+        if rule.kept != (rule.found <= rule.allowed):
+            yield (
+                f"The rule '{rule.rule}' is called {'kept' if rule.kept else 'not kept'}, with {rule.found:.6g} "
+                f"{rule.unit} where {rule.allowed:.6g} are allowed."
+            )
+    if report.summary.tolerance_met and not all(rule.kept for rule in report.rules):
+        yield "The report calls its tolerance met, and not all its rules are kept."
+
+
+def _over_gaps(report: ReportModel) -> dict[str, tuple[float, float, float]]:
+    """Of each thing that is held of gaps the largest share of what its seam may have, that, and what that is, mm."""
+    rules = rules_of(report.settings.rules)
+    allowed: Mapping[str, float | Array] = report.settings.gaps
+    if rules is not None and report.settings.gaps:
+        names = [panel.name for panel in report.panels]
+        allowed = rules.gaps(report.settings.gaps, names, _seam_panels(report))
+    over = {}
+    for what, most in allowed.items():
+        found = np.array([_GAPS[what](seam) for seam in report.seams])
+        each = np.broadcast_to(most, len(found))
+        worst = int((found / each).argmax()) if len(found) else -1
+        over[what] = (found[worst] / each[worst], found[worst], each[worst]) if len(found) else (0.0, 0.0, 0.0)
+    return over
+
+
+_GAPS: dict[str, Callable[[SeamModel], float]] = {
+    "gap": lambda seam: max(seam.max_corner_gap, seam.max_seam_gap),
+    "width": lambda seam: seam.width,
+    "step": lambda seam: seam.step,
+    "shift": lambda seam: seam.shift,
 }
 
 
 def _tolerance_faults(report: ReportModel, summary: SummaryModel) -> Iterator[str]:
-    allowed = report.settings.gaps
-    if not allowed:
+    yield from _rule_faults(report)
+    if not report.settings.gaps:
         return
-    found = {
-        "gap": max(summary.max_corner_gap, summary.max_seam_gap),
-        "width": summary.max_width,
-        "step": summary.max_step,
-        "shift": summary.max_shift,
-    }
+    gaps = _over_gaps(report)
     deviation = report.settings.max_deviation
     if summary.tolerance_met and deviation is not None and summary.max_deviation > deviation + SAME_LENGTH:
         yield f"The report calls its limits met, and a deviation in it is {summary.max_deviation:.6g} mm."
-    for what, most in allowed.items():
-        if summary.tolerance_met and found[what] > most:
-            yield f"The report calls the {what} of {most:g} mm held, and one in it is {found[what]:.6g} mm."
+    for what, (share, found, most) in gaps.items():
+        if summary.tolerance_met and share > 1.0:
+            yield f"The report calls the {what} of {most:g} mm held, and one in it is {found:.6g} mm."
     limits = list(_limits(report, summary))
     beyond = [limit for limit in limits if limit.over > SAME_LENGTH]
     if summary.tolerance_met and beyond:
         yield beyond[0].sentence
     far = deviation is not None and summary.max_deviation > deviation - SAME_LENGTH
-    within = all(found[what] < most - SAME_LENGTH for what, most in allowed.items()) and all(
+    within = all(found < most - SAME_LENGTH for share, found, most in gaps.values() if share > 0.0) and all(
         limit.over < -SAME_LENGTH for limit in limits
     )
+    within &= all(rule.kept for rule in report.rules)
     if not summary.tolerance_met and not far and within:
         yield "The report calls its tolerance not met, and all its gaps and limits are kept."
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from cadpanel.delivery.records.report import (
     OriginModel,
     PanelModel,
     ReferenceModel,
+    RuleModel,
     SeamModel,
     Setting,
     SolveModel,
@@ -78,6 +79,13 @@ def _prices(result: FitResult) -> dict[str, float]:
     return {name: price for name, price in found.items() if price > _FREE}
 
 
+def rule_records(result: FitResult) -> tuple[RuleModel, ...]:
+    """What was measured of every rule."""
+    return tuple(
+        RuleModel.model_validate({**asdict(outcome), "kept": outcome.kept}, by_name=True) for outcome in result.outcomes
+    )
+
+
 def baselines_record(result: FitResult) -> BaselinesModel:
     """The methods that the result is held against, by the same measures and limits."""
     return BaselinesModel(
@@ -124,6 +132,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         max_corner_drift=float(measures.drift[index]),
         max_drift_along=float(measures.drift_along[index]),
         max_free_edge_drift=float(measures.drift_across[index]),
+        outline_drift=float(measures.outline_drift[index]),
         area=built.area,
         volume=built.volume,
         surface=built.check.area,
@@ -164,15 +173,21 @@ def _outline_note(measures: Measures, index: int) -> tuple[str, ...]:
     )
 
 
-def seam_records(reference: Reference, measures: Measures, joints: Sequence[Joint]) -> tuple[SeamModel, ...]:
+def seam_records(
+    reference: Reference, measures: Measures, joints: Sequence[Joint], prices: Sequence[float] = ()
+) -> tuple[SeamModel, ...]:
     """Every seam; the panel that comes first in the file is named first, as its walk orders the corners.
 
     Args:
         reference: with the seams.
         measures: of their gaps and kinks.
         joints: of each, as `Built` has them.
+        prices: what each of them costs, see `FitResult.seam_prices`; empty where that is not known.
     """
-    return tuple(_seam(reference, seam, measures, index, joints[index]) for index, seam in enumerate(reference.seams))
+    return tuple(
+        _seam(reference, seam, measures, index, joints[index], prices[index] if prices else None)
+        for index, seam in enumerate(reference.seams)
+    )
 
 
 def seam_names(reference: Reference) -> tuple[tuple[str, str], ...]:
@@ -185,7 +200,9 @@ def _names(reference: Reference, seam: Seam) -> tuple[str, str]:
     return reference.panels[first].name, reference.panels[second].name
 
 
-def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint) -> SeamModel:
+def _seam(
+    reference: Reference, seam: Seam, measures: Measures, index: int, joint: Joint, price: float | None
+) -> SeamModel:
     order = np.argsort(seam.panels, kind="stable")
     first, second = (_edge(reference.panels[seam.panels[i]], seam.edges[i]) for i in order)
     gaps = measures.corner_gaps[index]
@@ -202,7 +219,9 @@ def _seam(reference: Reference, seam: Seam, measures: Measures, index: int, join
         turn=float(np.degrees(measures.edge_turns[seam.panels, seam.edges].max())),
         unevenness=float(measures.uneven[index]),
         max_kink=float(np.degrees(measures.kink[index])),
+        price=price,
         plane=cut_model(joint.plane.point, (1.0 if order[0] == 0 else -1.0) * joint.plane.normal),
+        joint=joint.own,
         recut=joint.recut,
     )
 

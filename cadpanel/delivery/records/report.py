@@ -84,6 +84,28 @@ class SolveModel(Record):
     prices: dict[str, NonNegative] = Field(default_factory=dict)
 
 
+class RuleModel(Record):
+    """What was measured of a rule for single panels or seams.
+
+    Attributes:
+        rule: in a few words, with the names of what it is about.
+        measure: what was measured.
+        found: the number.
+        allowed: what it may be at most.
+        unit: "mm" or "degrees"; empty of what is counted.
+        kept: whether it holds.
+        values: the numbers of single panels behind it, by their names: of radii those halfway between the ends.
+    """
+
+    rule: str
+    measure: str
+    found: NonNegative
+    allowed: NonNegative
+    unit: Literal["mm", "degrees", ""]
+    kept: bool
+    values: dict[str, float] = Field(default_factory=dict)
+
+
 class FittedModel(Record):
     """A panel as it was fitted, before it was cut back from its seams.
 
@@ -115,6 +137,7 @@ class PanelModel(Record):
         max_corner_drift: largest distance of a corner from its reference corner, mm.
         max_drift_along: the same, counted along the strip only, mm.
         max_free_edge_drift: the same, counted across the free edges only, mm.
+        outline_drift: largest distance of its free edges from the drawn ones, anywhere along them, mm.
         area: of the skin, mm^2.
         volume: of the solid, from the formula, mm^3.
         surface: area of all faces of the solid, mm^2; None in reports from before it was told, as are the next two.
@@ -146,6 +169,7 @@ class PanelModel(Record):
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
+    outline_drift: NonNegative = 0.0
     area: Positive
     volume: Positive
     surface: Positive | None = None
@@ -192,8 +216,11 @@ class SeamModel(Record):
         unevenness: how far the seam's corners lie off the middle between those before and after it, against the
             drawing, mm; 0 where a panel has no ends.
         max_kink: largest angle between the two skins' normals across the seam, degrees.
+        price: by how much the RMS deviation of all panels, mm, would fall for one mm more of the gap, or of all its
+            parts, at this seam alone, to first order; None where nothing is held at its tolerance.
         plane: in the middle of the joint, its normal out of the first panel; None in reports from before there were
             joints.
+        joint: clear width that was asked for of this seam alone, mm; None where it is that of all.
         recut: how far a corner of either edge was from that plane, at most, mm: so far the edges were moved to lie in
             it; the same.
         clear: the clear width between the two sheets along the whole seam, measured in panels.step; the same, and None
@@ -212,7 +239,9 @@ class SeamModel(Record):
     turn: NonNegative = 0.0
     unevenness: NonNegative = 0.0
     max_kink: NonNegative
+    price: NonNegative | None = None
     plane: CutModel | None = None
+    joint: NonNegative | None = None
     recut: NonNegative | None = None
     clear: ClearModel | None = None
 
@@ -235,7 +264,9 @@ class SummaryModel(Record):
         max_corner_drift: largest distance of a corner from its reference corner.
         max_drift_along: the same, counted along the strip only.
         max_free_edge_drift: the same, counted across the free edges only.
-        drift_along_percent, drift_across_percent: the last two as the largest share of a panel's own length, percent.
+        max_outline_drift: largest distance of a free edge from the drawn outline, anywhere along it.
+        drift_along_percent, drift_across_percent: the two before it as the largest share of a panel's own length,
+            percent.
         local_rms_multiple: the RMS deviation divided by the local fit's; None where the local fit is exact.
         tolerance_met: whether every gap is within the tolerance and every limit is kept; always true where weights
             ruled, which have no tolerance to miss.
@@ -254,6 +285,7 @@ class SummaryModel(Record):
     max_corner_drift: NonNegative
     max_drift_along: NonNegative
     max_free_edge_drift: NonNegative
+    max_outline_drift: NonNegative = 0.0
     drift_along_percent: NonNegative
     drift_across_percent: NonNegative
     local_rms_multiple: NonNegative | None
@@ -332,6 +364,7 @@ class ReportModel(Record):
     panels: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
     features: dict[str, NonNegativeCount] = Field(default_factory=dict)
+    rules: tuple[RuleModel, ...] = ()
     summary: SummaryModel
     baselines: BaselinesModel
     certificate: CertificateModel

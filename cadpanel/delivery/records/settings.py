@@ -13,12 +13,13 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
+from cadpanel.fitting.rules.book import Rules
 from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 
-OF_A_COLUMN = ("feature", "max_deviation", "method")
-"""The settings of a fit that a comparison chooses itself, for each column its own."""
+OF_A_COLUMN = ("feature", "max_deviation", "method", "rules")
+"""The settings of a fit that a comparison chooses itself, for each column its own, or does without."""
 # Where a record calls a setting by another name.
 _KEYS = {"schema": "step_schema"}
 
@@ -45,6 +46,7 @@ class ComparisonSettingsModel(Record):
         weights: the weights, or None where a tolerance was held.
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
+        drift_outline: how far the free outline might leave the drawn one; 0.5 for any.
         min_radius: tightest radius that was allowed anywhere, mm.
         blend: which stretches were to become curved patches, where the user said so.
         restarts: further starts.
@@ -62,6 +64,7 @@ class ComparisonSettingsModel(Record):
     weights: WeightsModel | None
     drift_along: NonNegative
     drift_across: NonNegative
+    drift_outline: NonNegative = 0.5
     min_radius: NonNegative = 0.0
     blend: tuple[str, ...] = ()
     restarts: NonNegativeCount
@@ -77,6 +80,7 @@ class SettingsModel(ComparisonSettingsModel):
         composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
         max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         method: name of the method.
+        rules: for single panels and seams, as a file of rules has them; None without any.
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
             nothing is said of sheets that overlap, either.
@@ -101,6 +105,7 @@ class SettingsModel(ComparisonSettingsModel):
     composition: tuple[str, ...] | None = None
     max_deviation: Annotated[float, Field(gt=0.0)] | None = None
     method: Method
+    rules: dict[str, Any] | None = None
     thickness: NonNegative
     joint: NonNegative | None = None
     skin_side: Literal["outer", "inner"]
@@ -178,6 +183,8 @@ def _plain(value: object) -> object:
         return value.name
     if isinstance(value, Weights):
         return asdict(value)
+    if isinstance(value, Rules):
+        return value.plain()
     if isinstance(value, Blend):
         return str(value)
     return tuple(map(_plain, value)) if isinstance(value, tuple) else value

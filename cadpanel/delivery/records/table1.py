@@ -34,7 +34,7 @@ def _record(result: FitResult) -> ColumnModel:
         feature=result.settings.feature_name,
         method=result.settings.method,
         max_corner_gap=tuple(result.measures.widest_corners.tolist()),
-        summary=summary(result.measures, result.local, result.settings),
+        summary=summary(result.measures, result.local, result.settings, result.outcomes),
         local_rms_deviation=result.local.overall_rms,
         seconds=result.seconds,
     )

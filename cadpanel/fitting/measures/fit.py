@@ -6,6 +6,7 @@
 - kink: largest angle between the two skins' normals across a seam.
 - deviation: distance of reference samples to their patch; the RMS is over the area, the maximum also over the outline.
 - Hausdorff: the larger of the distances from the reference to the trimmed skin and back.
+- outline drift: distance of a panel's free edges from the drawn ones, square to these.
 - corner drift: distance of a panel's outer corner from its reference corner; split along and across the free edge.
 
 All of them hang on the panels' shapes and on the reference alone, so that a delivery that was read back is measured by
@@ -24,6 +25,7 @@ from cadpanel.fitting.measures.boundary import overhang
 from cadpanel.fitting.measures.deviation import deviations, outline_distances
 from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.edges import PanelEdges
+from cadpanel.fitting.measures.free_outline import outline_drift
 from cadpanel.fitting.measures.seams import along_seams, corner_gaps
 from cadpanel.fitting.measures.turns import edge_turns, seam_unevenness
 from cadpanel.fitting.samples import SampleArrays
@@ -51,6 +53,7 @@ class Measures:
         drift_along: (panels,) of the corner, inner ones included, that drifted most along the strip, mm; of a panel
             whose ends cannot be told from its sides the whole drift.
         drift_across: (panels,) of the outer corner that drifted most across its free edge, mm.
+        outline_drift: (panels,) of the place on a free edge that is farthest from the drawn outline, mm.
         lengths: (panels,) the panels' lengths, mm.
         shapes: the panels that were measured, for those limits that hold what is to be seen of a panel alone.
     """
@@ -71,6 +74,7 @@ class Measures:
     drift: Array
     drift_along: Array
     drift_across: Array
+    outline_drift: Array
     lengths: Array
     shapes: tuple[Panel, ...]
 
@@ -132,6 +136,7 @@ def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
         drift=drifted.whole,
         drift_along=drifted.along,
         drift_across=drifted.across,
+        outline_drift=outline_drift(edges, reference),
         lengths=np.array([panel.length for panel in reference.panels]),
         shapes=tuple(shapes),
     )

@@ -22,9 +22,9 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
         return False
     if settings.weights is not None:
         return True
-    gaps = measures.gaps
+    gaps, asked = measures.gaps, settings.gaps_of([shape.name for shape in measures.shapes], measures.seam_panels)
     return bool(
-        all((gaps[what] <= allowed).all() for what, allowed in settings.gaps.items())
+        all((gaps[what] <= allowed).all() for what, allowed in asked.items())
         and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
 

@@ -113,8 +113,11 @@ def _hold_seams(
         found = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
         found = _tightened(problem, model, found, lost, starts[0], settings, progress)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
-    costs = prices(problem, named, found, settings.gaps | settings.allowed) if found.held else {}
-    return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), prices=costs)
+    if not found.held:
+        return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found))
+    costs, of_seams = prices(problem, named, found, settings.gaps | settings.allowed)
+    steps = iterations + found.iterations
+    return Fitted(found.unknowns, steps, stopped_as(found), prices=costs, seam_prices=tuple(of_seams.tolist()))
 
 
 def _tightened(
@@ -150,7 +153,7 @@ def _tightened(
 
 def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list[GapTerm]:
     """What holds gaps, a little inside what is allowed, as seams run at unknowns (panels, size)."""
-    allowed = {what: most * (1.0 - MARGIN) for what, most in settings.gaps.items()}
+    allowed = {what: most * (1.0 - MARGIN) for what, most in problem.gaps(settings).items()}
     return gap_terms(problem, allowed, problem.state(unknowns))
 
 
@@ -158,7 +161,7 @@ def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dic
     """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
     met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
     measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
-    excess = {what: measured[what] / most for what, most in settings.gaps.items()}
+    excess = {what: measured[what] / most for what, most in problem.gaps(settings).items()}
     return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
 
 
@@ -181,7 +184,7 @@ def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     """RMS deviation, and a large penalty for gaps and limits that do not hold."""
     state = problem.state(unknowns)
-    held: list[HeldTerm] = [*gap_terms(problem, settings.gaps, state), *problem.limits(settings)]
+    held: list[HeldTerm] = [*gap_terms(problem, problem.gaps(settings), state), *problem.limits(settings)]
     excess = max(term.hold.excess(term.vectors(state)) for term in held)
     rms = problem.rms(problem.deviation.cost(state))
     return rms * (1.0 if excess <= 1.0 else 1e3 * excess)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -45,27 +46,32 @@ def seam_terms(problem: Problem, tolerance: float) -> list[SeamTerm]:
     return [*problem.corner_gaps(tolerance), *problem.curve_gaps(tolerance)]
 
 
-def gap_terms(problem: Problem, gaps: Mapping[str, float], state: State) -> list[GapTerm]:
+def gap_terms(problem: Problem, gaps: Mapping[str, float | Array], state: State) -> list[GapTerm]:
     """Everything that holds gaps, and their parts, within what is allowed (mm, see `FitSettings.gaps`).
 
     Args:
         problem: the panels.
-        gaps: what is allowed.
+        gaps: what is allowed, of every seam (seams,) or one for all.
         state: in whose seams' directions parts are looked at.
     """
-    terms: list[GapTerm] = [*seam_terms(problem, gaps["gap"])] if "gap" in gaps else []
+    asked = gaps.get("gap", 0.0)
+    whole = float(np.max(asked))
+    terms: list[GapTerm] = [*seam_terms(problem, whole)] if whole else []
     for term in terms:
         term.hold.weight[:] = 0.0
+        if isinstance(asked, np.ndarray):
+            term.hold.tighten(asked[term.seams.index] / whole)
         if isinstance(term, ArcGap):
             term.straighten(state)
             term.hold.radius = _ARC_SHARE * term.hold.radius
     parts = {part: gaps[part] / problem.place.length for part in PARTS if part in gaps}
     for batch in problem.seams if parts else ():
+        own = {part: most[batch.index] if isinstance(most, np.ndarray) else most for part, most in parts.items()}
         ends = OutermostGap(batch, problem.place, problem.layout, tolerance=1.0)
-        terms.append(PartedGap(ends, state, parts))
+        terms.append(PartedGap(ends, state, own))
         if not (batch.straight(0) and batch.straight(1)) and set(parts) & set(PARTS[: MixedGap.parts]):
             between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
-            terms.append(PartedGap(between, state, parts, share=_ARC_SHARE))
+            terms.append(PartedGap(between, state, own, share=_ARC_SHARE))
     return terms
 
 
@@ -91,7 +97,7 @@ def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]
 
 def prices(
     problem: Problem, named: Sequence[tuple[str, HeldTerm]], found: HeldSolution, allowed: Mapping[str, float]
-) -> dict[str, float]:
+) -> tuple[dict[str, float], Array]:
     """By how much the RMS deviation, mm, would fall for one unit more of each thing that is held, to first order.
 
     A multiplier w is the weight of |v|^2 / 2 that holds the vector v at its distance r: where all distances grow by a
@@ -102,21 +108,30 @@ def prices(
         named: what was held, in the order of the solution's multipliers, each with the name of what it holds.
         found: where it ended.
         allowed: of each name, in the units in which it is asked for.
+
+    Returns:
+        the falls by their names, and (seams,) those for one mm more of the gap, or of all its parts, at one seam alone.
     """
     state = problem.state(found.unknowns)
     rms = problem.rms(problem.deviation.cost(state))
-    pulls: dict[str, float] = dict.fromkeys(allowed, 0.0)
+    pulls: dict[str, float] = defaultdict(float)
+    seams = np.zeros(len(problem.met))
     for (name, term), weight in zip(named, found.end.multipliers, strict=True):
         weight = problem.areas[term.blocks[0]][:, None] * weight
         if isinstance(term, PartedGap):  # each part by its share of |v|^2
             for part, lengths in zip(term.parts, np.moveaxis(term.vectors(state), 2, 0), strict=True):
-                pulls[part] += float(np.sum(weight * lengths**2))
+                pull = weight * lengths**2
+                pulls[part] += float(np.sum(pull))
+                seams[term.seams.index] += pull.sum(axis=1) / allowed.get(part, np.inf)
         elif not term.hold.one_sided:
-            pulls[name] += float(np.sum(weight * term.hold.radius**2))
+            pull = weight * term.hold.radius**2
+            pulls[name] += float(np.sum(pull))
+            if name == "gap" and isinstance(term, CornerGap | ArcGap | MixedGap):
+                seams[term.seams.index] += pull.sum(axis=1) / allowed["gap"]
     if rms <= EXACT:
-        return dict.fromkeys(pulls, 0.0)
+        return dict.fromkeys(allowed, 0.0), np.zeros(len(seams))
     scale = problem.place.length / (problem.panels * rms)
-    return {name: scale * pull / allowed[name] for name, pull in pulls.items()}
+    return {name: scale * pulls[name] / most for name, most in allowed.items()}, scale * seams
 
 
 def held_within(

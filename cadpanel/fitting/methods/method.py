@@ -27,6 +27,7 @@ class Fitted:
         starts: how many starts were made.
         prices: by how much the RMS deviation, mm, would fall for one unit more of what is held, by its name; empty
             where nothing is held at its tolerance.
+        seam_prices: the same for one mm more of the gap, or of all its parts, at each seam alone; empty likewise.
     """
 
     unknowns: Array
@@ -35,6 +36,7 @@ class Fitted:
     agreed: int = 1
     starts: int = 1
     prices: Mapping[str, float] = field(default_factory=dict)
+    seam_prices: tuple[float, ...] = ()
 
 
 class Method(ABC):

@@ -11,6 +11,7 @@ from cadpanel.terms.limits.flange_width import FlangeWidth
 from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.outline_drift import DriftOutline
 from cadpanel.terms.limits.seam_turn import SeamTurn
 
 LIMITS: tuple[Limit, ...] = (
@@ -19,6 +20,7 @@ LIMITS: tuple[Limit, ...] = (
     Kink(),
     DriftAlong(),
     DriftAcross(),
+    DriftOutline(),
     MinRadius(),
     FlangeWidth(),
 )

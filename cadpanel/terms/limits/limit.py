@@ -113,6 +113,11 @@ class Measured(Shapes, Protocol):
         """(panels,) of the outer corner that drifted most across its free edge, mm."""
         ...
 
+    @property
+    def outline_drift(self) -> Array:
+        """(panels,) of the place on a free edge that is farthest from the drawn outline, mm."""
+        ...
+
 
 @dataclass(frozen=True, slots=True)
 class Row:

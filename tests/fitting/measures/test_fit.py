@@ -141,7 +141,16 @@ def test_renumbering_panels_changes_no_measure(case):
     shapes, reference = CASES[case]()
     off, order = shaken(shapes, 2), np.random.default_rng(3).permutation(len(shapes)).tolist()
     one, other = measure(off, reference), measure([off[i] for i in order], renumbered(reference, order))
-    of_panels = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths")
+    of_panels = (
+        "rms_deviation",
+        "max_deviation",
+        "hausdorff",
+        "drift",
+        "drift_along",
+        "drift_across",
+        "outline_drift",
+        "lengths",
+    )
     also = ("edge_turns",)
     told = replace(one, **{name: getattr(one, name)[order] for name in of_panels + also})
     # Corner gaps stand in the order of the panel that comes first, which may be the other one now.

@@ -1,5 +1,6 @@
 """Laws of the methods on short strips of a twisting lip: what they promise, and what must not change their answer."""
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -194,6 +195,11 @@ def test_a_tolerance_that_cannot_be_held_is_reported_with_its_seam():
     assert f"{gaps.max():.2f} mm" in sentence
     assert result.stopped in (Stop.STALLED, Stop.STEP_LIMIT, Stop.TOO_COSTLY)
     assert sentence.endswith(f"the search stopped as {result.stopped.value}")
+    advised = re.search(r"--gap-tolerance (\S+) would hold", sentence)
+    assert advised is not None
+    again = fit(lip(2), replace(impossible, gap_tolerance=float(advised[1])))
+    assert again.tolerance_met
+    assert float(advised[1]) < 1.2 * gaps.max()
     assert fitted().shortfall() is None
 
 

@@ -1,0 +1,143 @@
+"""What limits and rules on seams are for: a drawing fitted for closed gaps alone, and as one would send it to a shop.
+
+python examples/before_and_after.py [REFERENCE.step|canopy|column] [OUT] [PICTURE.png]
+
+The canopy (60 m, 30 panels) and the column (8 m, 64 panels) are drawn here; any other strip is read from a file. Both
+deliveries are read back, and their seams are drawn, coloured by how far each turns from the drawn one.
+"""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import cadquery as cq
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+import cadpanel as cp
+from cadpanel.delivery.records.report import ReportModel, read_report
+
+which = sys.argv[1] if len(sys.argv) > 1 else "canopy"
+out = Path(sys.argv[2] if len(sys.argv) > 2 else f"build/example_{Path(which).stem}")
+picture = Path(sys.argv[3]) if len(sys.argv) > 3 else out / "picture.png"
+out.mkdir(parents=True, exist_ok=True)
+
+# Gaps of 2 mm and nothing said of seams, as fits were made before seams had limits; and what is asked for instead.
+GAPS_ALONE: dict[str, Any] = {"gap_tolerance": 2.0, "seam_turn": 90.0, "evenness": 0.5, "drift_along": 0.05}
+FITS: dict[str, dict[str, Any]] = {"gaps of 2 mm alone": GAPS_ALONE, "default limits": {}}
+if which == "column":
+    FITS = {
+        "cylinders, gaps of 2 mm alone": {"feature": "cylinder", **GAPS_ALONE},
+        "cones, level rings": {"feature": "cone", "rules": {"level": [{"within": 2.0}]}},
+    }
+
+
+def face(points: np.ndarray) -> cq.Face:
+    """A smooth face through points (m, n, 3)."""
+    return cq.Face.makeSplineApprox([[cq.Vector(*p) for p in row] for row in points.tolist()], tol=0.05, maxDeg=5)
+
+
+def canopy() -> cq.Compound:
+    """A strip of 60 m: two flanges about a blend, which twists to one side and back while its spine is an arc."""
+    along, across = np.linspace(0.0, 1.0, 121), np.linspace(0.0, 1.0, 41)
+    # The section's direction turns by 80 degrees in its middle third.
+    turn = np.radians(80.0) * np.clip(3.0 * across - 1.0, 0.0, 1.0)
+    middle = 0.5 * (turn[1:] + turn[:-1])
+    step = 2800.0 / (len(across) - 1)
+    section = np.zeros((len(across), 2))
+    section[1:] = np.cumsum(step * np.stack([np.cos(middle), -np.sin(middle)], axis=1), axis=0)
+    section -= section[len(across) // 2]
+    points = []
+    for share in along.tolist():
+        plan, twist = 60_000.0 * share / 90_000.0, np.radians(12.0 * np.sin(np.pi * share))
+        place = np.array([90_000.0 * np.sin(plan), 90_000.0 * (1.0 - np.cos(plan)), 3_000.0 * np.sin(np.pi * share)])
+        side, up = np.array([-np.sin(plan), np.cos(plan), 0.0]), np.array([0.0, 0.0, 1.0])
+        x, y = np.cos(twist) * side + np.sin(twist) * up, np.cos(twist) * up - np.sin(twist) * side
+        points.append(place + section[:, :1] * x + section[:, 1:] * y)
+    return cq.Compound.makeCompound([face(np.array(points))])
+
+
+def column() -> cq.Compound:
+    """Four quarters of a column that is oval and flares towards its head."""
+    quarters = []
+    for quarter in range(4):
+        angle = 0.5 * np.pi * (quarter + np.linspace(0.0, 1.0, 25))
+        height = np.linspace(0.0, 8000.0, 41)[:, None]
+        wider = 1.0 + 0.8 * (height / 8000.0) ** 2
+        x, y = 1200.0 * wider * np.cos(angle), 800.0 * wider * np.sin(angle)
+        quarters.append(face(np.stack([x, y, np.broadcast_to(height, x.shape)], axis=2)))
+    return cq.Compound.makeCompound(quarters)
+
+
+def drawn() -> cp.Reference:
+    """The reference as panels."""
+    if which not in ("canopy", "column"):
+        return cp.read(which)
+    file = out / f"{which}.step"
+    shape = canopy() if which == "canopy" else column()
+    shape.exportStep(str(file))
+    return cp.read(file, divide=30) if which == "canopy" else cp.read(file, grid=(8, 2))
+
+
+def outlines(report: ReportModel) -> list[np.ndarray]:
+    """Every panel's outline as points, before it was cut back for joints."""
+    corners = [np.array(panel.fitted.corners) for panel in report.panels if panel.fitted is not None]
+    return [np.concatenate([rows[0], rows[-1][::-1], rows[0][:1]]) for rows in corners]
+
+
+def seams(report: ReportModel) -> tuple[list[np.ndarray], list[float]]:
+    """Every edge on a seam as points, and by how many degrees it turns from the drawn one."""
+    panels = {panel.name: panel for panel in report.panels}
+    lines, turns = [], []
+    for seam in report.seams:
+        for name, edge in zip(seam.panels, seam.edges, strict=True):
+            fitted = panels[name].fitted
+            assert fitted is not None
+            rows, place = np.array(fitted.corners), int(edge[-1])
+            lines.append(rows[place] if edge.startswith("end") else rows[:, -place])
+            turns.append(seam.turn)
+    return lines, turns
+
+
+def developed(points: np.ndarray) -> np.ndarray:
+    """Laid out flat: the canopy along its arc, seen from above, the column round its axis, anything else from above."""
+    x, y, z = points.T
+    if which == "canopy":
+        return np.stack([90_000.0 * np.arctan2(x, 90_000.0 - y), np.hypot(x, 90_000.0 - y)], axis=1)
+    if which == "column":
+        middle = np.mod(np.arctan2(y.mean(), x.mean()) + 0.1, 2.0 * np.pi) - 0.1
+        turned = np.mod(np.arctan2(y, x) - middle + np.pi, 2.0 * np.pi) - np.pi
+        return np.stack([1000.0 * (middle + turned), z], axis=1)
+    return np.stack([x, y], axis=1)
+
+
+reference = drawn()
+reports = {}
+for name, how, folder in zip(FITS, FITS.values(), ("before", "after"), strict=True):
+    result = cp.fit(reference, **how)
+    cp.write_step(result, out / f"{folder}.step")
+    cp.deliver(result, out / folder, outputs="step", overwrite=True)
+    reports[name] = read_report(out / folder / "report.json")
+    worst = max(reports[name].seams, key=lambda seam: seam.turn)
+    print(f"{name}: the seam {worst.panels[0]} to {worst.panels[1]} turns most, by {worst.turn:.1f} degrees")
+
+figure = Figure(figsize=(12.0, 5.0), layout="constrained")
+columns = 2 if which == "column" else 1
+for ax, (name, report) in zip(figure.subplots(2 // columns, columns), reports.items(), strict=True):
+    ax.add_collection(LineCollection([developed(line) for line in outlines(report)], colors="0.6", linewidths=0.8))
+    lines, turns = seams(report)
+    drawing = LineCollection([developed(line) for line in lines], cmap="turbo", linewidths=1.8, clim=(0.0, 12.0))
+    drawing.set_array(np.array(turns))
+    ax.add_collection(drawing)
+    ax.autoscale()
+    if which == "canopy":
+        ax.set_xlim(20_000.0, 50_000.0)
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    summary = report.summary
+    measured = f"step {summary.max_step:.1f} mm, RMS deviation {summary.rms_deviation:.1f} mm"
+    ax.set_title(f"{name}\nseams turn by up to {max(turns):.1f} degrees, {measured}", fontsize=9)
+    figure.colorbar(drawing, ax=ax, label="degrees", shrink=0.8)
+figure.savefig(picture, dpi=70)
+print(f"Written: {picture}")

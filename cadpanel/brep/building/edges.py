@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.Geom import Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
+from OCP.Geom import Geom_BSplineCurve, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
 from OCP.gp import gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
@@ -14,7 +14,9 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.interpolation import DEGREE, Interpolant
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import pole_array
 from cadpanel.geometry.cone_sections import EllipticSection
 from cadpanel.geometry.vectors import cross
 
@@ -43,6 +45,13 @@ def arc_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, section: EllipticSection
     turn = cross(section.cosine_axis / major, section.sine_axis / minor)
     conic = gp_Elips(kernel.conic_frame(section.center, turn, section.cosine_axis / major), major, minor)
     return _edge(Geom_Ellipse(conic), first, last, section.start, section.stop)
+
+
+def spline_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, spline: Interpolant) -> TopoDS_Edge:
+    """The edge along a spline between two vertices, its parameter the spline's."""
+    curve = Geom_BSplineCurve(pole_array(spline.poles), *spline.kernel_knots(), DEGREE)
+    start, stop = spline.knots[[0, -1]].tolist()
+    return _edge(curve, first, last, start, stop)
 
 
 def _edge(curve: Geom_Curve, first: TopoDS_Vertex, last: TopoDS_Vertex, start: float, stop: float) -> TopoDS_Edge:

@@ -75,12 +75,13 @@ def build_panels(
     tell("build", 0, len(shapes))
     straight = [shape.straightened() for shape in shapes]
     fitted = [one.shape for one in straight]
-    edges = seam_edges(shapes, seams)
+    edges, square = seam_edges(shapes, seams), sheet.ends == "square"
     try:
-        jointed = cut_to_seams(fitted, edges, sheet.joint, sheet_depth(sheet.thickness, sheet.skin_side))
+        depth = sheet_depth(sheet.thickness, sheet.skin_side)
+        jointed = cut_to_seams(fitted, edges, sheet.joint, depth, square=square)
         panels = _build_all(straight, jointed, sheet, tell)
     except PanelError:
-        narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side)
+        narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side, square=square)
         if narrow is None:
             raise
         raise PanelError(narrow.panel, narrow.reason) from None

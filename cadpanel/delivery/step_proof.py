@@ -57,6 +57,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             fitted=_fitted(panel),
             flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
             placed=contents.placed,
+            square=contents.sheet.ends == "square",
         )
         for panel, part in zip(contents.records, contents.parts, strict=True)
     ]

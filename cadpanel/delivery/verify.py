@@ -71,7 +71,8 @@ def _contents(report: ReportModel) -> Contents:
     sheet, shop = report.settings.sheet(), report.settings.shop()
     chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    parts = flat_parts([recorded_shape(panel, depth) for panel in report.panels], sheet, shop)
+    square = sheet.ends == "square"
+    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
     own = [place for place, panel in enumerate(report.panels) if panel.name in chosen]
     return Contents(
         title=Path(report.reference.file).stem,

@@ -105,7 +105,7 @@ def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
 
 def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
     options = "--gap-tolerance 3 --step 2 --seam-turn 5 --evenness 1 --max-kink 20"
-    options += " --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2"
+    options += " --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2 --ends square"
     options += (
         " --skin-side inner"
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
@@ -143,6 +143,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "seam_tolerance": 0.5,
         "thickness": 5.0,
         "joint": 2.0,
+        "ends": "square",
         "skin_side": "inner",
         "step_schema": "AP214",
         "outputs": ["step", "flats"],

@@ -193,7 +193,7 @@ def _tangency(found: Sequence[ShapeFacts], label: str, failures: list[str]) -> f
 
 def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
     """Everything about one solid but its tangency; returns the relative error of its volume."""
-    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *_walls(panel) * ("plane",)))
+    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *panel.walls))
     # One patch meets no other smoothly; the walls of a polygon may, where its outline hardly turns.
     smooth = int((edge_angles(facts.straight_edges, facts.edge_surfaces) < FOLD_ANGLE).sum())
     wrongly_smooth = len(panel.kinds) > 1 and smooth != 2 * len(panel.kinds) - 2
@@ -212,14 +212,9 @@ def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -
     return error
 
 
-def _walls(panel: ExpectedPanel) -> int:
-    """Walls of the sheet: two ends and two sides, or one at each edge of a polygon."""
-    return 4 if len(panel.corners) == 2 else panel.corners.shape[1]
-
-
 def _check_far_face(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> None:
     """Corners of the solid must lie where the thickness and the skin's side put the far face of each flat patch."""
-    corners = _walls(panel)  # a flat patch of a chain has four, a polygon one at each wall
+    corners = 4 if len(panel.corners) == 2 else panel.corners.shape[1]  # of a flat patch of a chain, or of a polygon
     for index, (point, normal) in enumerate(panel.far_planes, start=1):
         off = np.sort(np.abs((facts.vertices - point) @ normal))
         if not (len(off) >= corners and off[corners - 1] <= POSITION_LIMIT):

@@ -39,6 +39,8 @@ class ExpectedPanel:
         fitted: the panel before it was cut back; None where it was not.
         flat: what its flat pattern says; None to leave it alone.
         placed: where the origin of its coordinates lies in both files, mm.
+        square: whether the walls of its sheet stand square to it; at the ends of round patches they are neither planes
+            nor round then.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -51,6 +53,17 @@ class ExpectedPanel:
     fitted: Fitted | None = None
     flat: ExpectedFlat | None = None
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    square: bool = False
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """Kinds of the walls of its sheet: two ends and two sides, or one at each edge of a polygon."""
+        if len(self.corners) == 1:
+            return int(self.corners.shape[1]) * ("plane",)
+        if not self.square:
+            return 4 * ("plane",)
+        ends = tuple("plane" if kind == "plane" else "other" for kind in self.kinds)
+        return (*ends, *ends, "plane", "plane")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -85,13 +85,16 @@ def _area_at(panel: FlatFacts) -> float:
 
 
 def _main_faces(solid: ShapeFacts, far_planes: Array, depth: float) -> Array:
-    """(f,) which faces are no walls: round ones, and those in the planes of flat patches, near or far."""
+    """(f,) which faces are no walls: round ones, and those in the planes of flat patches, near or far.
+
+    Square walls at the ends of round patches are neither planes nor round.
+    """
     normals, points = far_planes[:, 1], far_planes[:, 0]
-    flat = (solid.surfaces[:, 6:8] == 0.0).all(axis=1)
+    flat, known = (solid.surfaces[:, 6:8] == 0.0).all(axis=1), np.isfinite(solid.surfaces[:, 6])
     turned = np.linalg.norm(np.cross(solid.surfaces[:, None, 3:6], normals), axis=-1) <= _SAME_PLANE
     heights = np.einsum("fpx,px->fp", solid.surfaces[:, None, :3] - points, normals)
     level = np.minimum(np.abs(heights), np.abs(heights + depth)) <= _SAME_PLANE
-    return np.asarray(~flat | (turned & level).any(axis=-1))
+    return np.asarray((known & ~flat) | (turned & level).any(axis=-1))
 
 
 def _lengths(border: CurvePieces) -> Array:

@@ -27,6 +27,7 @@ from cadpanel.brep.kernel.shapes import edges_of, faces_of, packed, shapes_of, u
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.brep.step.file import OpenStep, open_step
 from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.sampled_curves import POINTS
 
 # By so many radians nothing as large as a panel is turned.
 _NO_TURN = 1e-13
@@ -115,6 +116,7 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
         piece_faces=lies_on[known],
         other_edges=lies_on[~known],
+        other_points=_points([edge for (edge, _), curve in zip(edges, curves, strict=True) if curve is None]),
         surfaces=np.array([numbers or [np.nan] * 9 for _, numbers in surfaces]).reshape(-1, 9),
     )
 
@@ -185,6 +187,16 @@ def _straight(
 
 def _ends(edge: TopoDS_Edge) -> list[list[float]]:
     return [_xyz(BRep_Tool.Pnt_s(end)) for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))]
+
+
+def _points(edges: Sequence[TopoDS_Edge]) -> Array:
+    """(o, POINTS, 3) points along edges."""
+    found = []
+    for edge in edges:
+        curve = BRepAdaptor_Curve(edge)
+        places = np.linspace(curve.FirstParameter(), curve.LastParameter(), POINTS)
+        found.append([_xyz(curve.Value(place)) for place in places.tolist()])
+    return np.array(found).reshape(-1, POINTS, 3)
 
 
 def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | None:

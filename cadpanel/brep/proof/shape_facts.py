@@ -11,6 +11,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
+from cadpanel.geometry.sampled_curves import reach
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
 
@@ -37,6 +38,7 @@ class ShapeFacts:
         piece_ends: (e, 2, 3) their two end vertices, mm.
         piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
         other_edges: (o, 2) the same for the edges that are neither.
+        other_points: (o, q, 3) points along these, evenly by their parameter, both ends among them, mm.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
     """
 
@@ -56,7 +58,14 @@ class ShapeFacts:
     piece_ends: Array
     piece_faces: IntArray
     other_edges: IntArray
+    other_points: Array
     surfaces: Array
+
+    def reach(self, directions: Array) -> tuple[Array, Array]:
+        """Least and greatest (d, e + o) inner product of directions (d, 3) with the points of all edges."""
+        known, others = self.pieces.reach(directions), reach(self.other_points, directions)
+        least, greatest = (np.concatenate(pair, axis=1) for pair in zip(known, others, strict=True))
+        return least, greatest
 
     @property
     def border(self) -> BoolArray:

@@ -80,6 +80,7 @@ class SettingsModel(ComparisonSettingsModel):
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
             nothing is said of sheets that overlap, either.
+        ends: "square" where walls stand square to the sheet.
         skin_side: "outer" where the skin is the sheet's outer face.
         step_schema: of the STEP files.
         outputs: those that were asked for; None for all that need no asking.
@@ -100,6 +101,7 @@ class SettingsModel(ComparisonSettingsModel):
     method: str
     thickness: NonNegative
     joint: NonNegative | None = None
+    ends: Literal["bevel", "square"] = "bevel"
     skin_side: Literal["outer", "inner"]
     step_schema: Literal["AP242", "AP214"]
     outputs: tuple[str, ...] | None = None
@@ -119,7 +121,11 @@ class SettingsModel(ComparisonSettingsModel):
     def sheet(self) -> SheetSettings:
         """The settings of the sheet, as they were asked for."""
         return SheetSettings(
-            thickness=self.thickness, joint=self.joint or 0.0, skin_side=self.skin_side, schema=self.step_schema
+            thickness=self.thickness,
+            joint=self.joint or 0.0,
+            ends=self.ends,
+            skin_side=self.skin_side,
+            schema=self.step_schema,
         )
 
     def shop(self) -> ShopSettings:

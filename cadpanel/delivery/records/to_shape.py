@@ -17,12 +17,13 @@ from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.vectors import cross, unit
 
 
-def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
+def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape:
     """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm.
 
     Args:
         panel: the record.
         depth: where the sheet's other face lies, mm along the skin's normal.
+        square: whether the sheet's walls stand square to it.
 
     Raises:
         DeliveryError: the record does not say how the panel is cut, or what part it is.
@@ -44,7 +45,12 @@ def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape
         (plane,) = panel.patches
         assert isinstance(plane, PlanePatchModel)
         return PolygonShape(
-            name=panel.name, feature=panel.feature, outline=corners[0], normal=np.array(plane.normal), posts=moves[0]
+            name=panel.name,
+            feature=panel.feature,
+            outline=corners[0],
+            normal=np.array(plane.normal),
+            posts=None if square else moves[0],
+            square=square,
         )
     directions = unit(corners[1] - corners[0])
     normals = np.empty_like(directions)
@@ -63,7 +69,8 @@ def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape
         patches=tuple(patches),
         cut_points=np.array([cut.offset for cut in panel.cuts])[:, None] * cuts,
         cut_normals=cuts,
-        side_leans=_side_leans(moves, cross(directions, normals), patches),
+        side_leans=np.zeros(2) if square else _side_leans(moves, cross(directions, normals), patches),
+        square=square,
     )
 
 

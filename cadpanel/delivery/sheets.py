@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from cadpanel.brep.building.holes import Hole
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
+from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import PanelError
 from cadpanel.geometry.edge_planes import SeamEdges
 from cadpanel.geometry.joint_widths import widest_joint
@@ -35,6 +38,7 @@ class PanelSheet:
         skin: the open shell that approximates the reference.
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
+        fixings: its holes; None where none are asked for. The skin has none.
         moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
         notes: what the fabricator should know, one sentence each.
     """
@@ -46,6 +50,7 @@ class PanelSheet:
     skin: Shell
     area: float
     volume: float
+    fixings: PanelFixings | None
     moved: float
     notes: tuple[str, ...]
 
@@ -64,9 +69,20 @@ class Built:
 
 
 def build_panels(
-    shapes: Sequence[Panel], sheet: SheetSettings, seams: Sequence[Seam] = (), progress: Progress | None = None
+    shapes: Sequence[Panel],
+    sheet: SheetSettings,
+    seams: Sequence[Seam] = (),
+    progress: Progress | None = None,
+    shop: ShopSettings | None = None,
 ) -> Built:
     """Build the sheet and the skin of every panel, cut back from the seams.
+
+    Args:
+        shapes: as they were fitted.
+        sheet: of what, and how far apart.
+        seams: of the reference.
+        progress: told of the step "build".
+        shop: what is done to sheets: holes.
 
     Raises:
         PanelError: a panel cannot be built; the message names it, the reason and the remedy.
@@ -79,7 +95,7 @@ def build_panels(
     try:
         depth = sheet_depth(sheet.thickness, sheet.skin_side)
         jointed = cut_to_seams(fitted, edges, sheet.joint, depth, square=square)
-        panels = _build_all(straight, jointed, sheet, tell)
+        panels = _build_all(straight, jointed, sheet, shop or ShopSettings(), tell)
     except PanelError:
         narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side, square=square)
         if narrow is None:
@@ -105,17 +121,18 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
 
 
 def _build_all(
-    straight: Sequence[Straightened[Panel]], jointed: Jointed, sheet: SheetSettings, tell: Progress
+    straight: Sequence[Straightened[Panel]], jointed: Jointed, sheet: SheetSettings, shop: ShopSettings, tell: Progress
 ) -> tuple[PanelSheet, ...]:
     built: list[PanelSheet] = []
     for one, shape in zip(straight, jointed.shapes, strict=True):
-        built.append(_build(one, shape, sheet))
+        built.append(_build(one, shape, sheet, shop))
         tell("build", len(built), len(straight))
     return tuple(built)
 
 
-def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) -> PanelSheet:
-    built = build_panel(shape, sheet.thickness, sheet.skin_side)
+def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings, shop: ShopSettings) -> PanelSheet:
+    fixings = panel_fixings(shape, sheet, shop)
+    built = build_panel(shape, sheet.thickness, sheet.skin_side, _holes(fixings))
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
@@ -128,7 +145,17 @@ def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) ->
         solid=built.solid,
         skin=built.skin,
         area=shape.area(),
-        volume=sheet_volume(shape, sheet.thickness, sheet.skin_side),
+        volume=sheet_volume(shape, sheet.thickness, sheet.skin_side) - (fixings.volume if fixings is not None else 0.0),
+        fixings=fixings,
         moved=straight.largest_move,
         notes=notes,
     )
+
+
+def _holes(fixings: PanelFixings | None) -> list[Hole]:
+    if fixings is None:
+        return []
+    return [
+        Hole(patch=hole.patch, place=fixings.places[hole.patch], middle=hole.place, diameter=fixings.rule.diameter)
+        for hole in fixings.found.holes
+    ]

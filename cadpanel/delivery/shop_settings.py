@@ -9,14 +9,16 @@ from dataclasses import dataclass
 from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
+from cadpanel.geometry.limits import LEAST_DISTANCE, LEAST_PITCH
 from cadpanel.reference.texts import choices_of
-from cadpanel.setting import Option, Range, check_ranges, setting
+from cadpanel.setting import Option, Range, check_ranges, require, setting
 
 Origin = Literal["local", "keep"]
 DxfEntities = Literal["polyline", "lines"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
+_FIXINGS = re.compile(r"\s*(\d+(?:\.\d+)?)\s*@\s*(\d+(?:\.\d+)?)\s*,\s*(\d+(?:\.\d+)?)\s*")
 _NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _LONGEST_LAYER = 255
 
@@ -39,6 +41,7 @@ class ShopSettings:
         density: of the sheet's material, kg/m3.
         stock: sheets that the store has, length and width, mm.
         facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
+        fixings: fixing holes along edges: their diameter, largest pitch, and distance from the edge, mm; None for none.
     """
 
     outputs: str | Sequence[str] | None = setting(
@@ -121,6 +124,16 @@ class ShopSettings:
         option=Option(metavar="MM", help="How far a bend pressed in facets may lie from the round one."),
     )
 
+    fixings: Sequence[float] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: fixings_of(text),
+            metavar="D@PITCH,EDGE",
+            help="Fixing holes: diameter, largest pitch, and distance of their middles from the edge, mm.",
+        ),
+    )
+
     def __post_init__(self) -> None:
         """Check every setting, and bring those of several parts into one form.
 
@@ -138,6 +151,7 @@ class ShopSettings:
             object.__setattr__(self, "outputs", _names("outputs", self.outputs))
         object.__setattr__(self, "only", _names("panels", self.only) if self.only else ())
         object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
+        object.__setattr__(self, "fixings", None if self.fixings is None else _checked_fixings(self.fixings))
         object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
 
     def layer(self, role: str) -> str:
@@ -155,6 +169,20 @@ def stock_of(text: str) -> tuple[tuple[float, float], ...]:
     if not all(found):
         raise SettingsError(f"sheets of the stock are written like 1500x3000,2000x4000, not {text!r}")
     return tuple((float(sheet[1]), float(sheet[2])) for sheet in found if sheet is not None)
+
+
+def fixings_of(text: str) -> tuple[float, ...]:
+    """Diameter, pitch and distance from the edge from "6.5@400,20".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = _FIXINGS.fullmatch(text)
+    if found is None:
+        raise SettingsError(
+            f"fixing holes are written like 6.5@400,20 (diameter, pitch, distance from edges), not {text!r}"
+        )
+    return tuple(map(float, found.groups()))
 
 
 def layers_of(text: str) -> tuple[tuple[str, str], ...]:
@@ -202,6 +230,20 @@ def _checked_sheet(given: object) -> tuple[float, float]:
     return float(sides[0]), float(sides[1])
 
 
+def _checked_fixings(given: object) -> tuple[float, float, float]:
+    numbers = tuple(given) if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    good = [isinstance(number, int | float) and 0.0 < number < math.inf for number in numbers]
+    if len(numbers) != 3 or not all(good):
+        raise SettingsError(
+            f"fixing holes have a diameter, a pitch and a distance from edges in mm, like (6.5, 400, 20), not {given!r}"
+        )
+    diameter, pitch, distance = map(float, numbers)
+    require("diameter of fixing holes", diameter, least=0.5, most=1000.0, unit=" mm")
+    require("pitch of fixing holes", pitch, least=LEAST_PITCH * diameter, unit=" mm")
+    require("distance of fixing holes from the edge", distance, least=LEAST_DISTANCE * diameter, unit=" mm")
+    return diameter, pitch, distance
+
+
 class ShopKeywords(TypedDict, total=False):
     """The fields of `ShopSettings` as keywords, which type checkers want written out; a test holds the two alike."""
 
@@ -218,3 +260,4 @@ class ShopKeywords(TypedDict, total=False):
     density: float
     stock: Sequence[tuple[float, float]]
     facet_height: float
+    fixings: Sequence[float] | None

@@ -13,9 +13,11 @@ from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
+from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
 from cadpanel.geometry.sheet_checks import sheet_depth
@@ -55,9 +57,10 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
             fitted=_fitted(panel),
-            flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
+            flat=_expected_flat(part, depth),
             placed=contents.placed,
             square=contents.sheet.ends == "square",
+            holes=_expected_holes(part, depth),
         )
         for panel, part in zip(contents.records, contents.parts, strict=True)
     ]
@@ -66,6 +69,27 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint)
     found = dict(zip(there, certificate.clear, strict=True)) if certificate.clear else {}
     return Proved(certificate=_record(certificate), seams=_with_joints(contents.seams, found))
+
+
+def _expected_flat(part: FlatPart, depth: float) -> ExpectedFlat:
+    holes = 0.0 if part.fixings is None else part.fixings.area
+    return ExpectedFlat(area=part.size.area - holes, share=part.share, depth=depth, skin_pieces=part.skin_pieces)
+
+
+def _expected_holes(part: FlatPart, depth: float) -> ExpectedHoles | None:
+    if part.fixings is None:
+        return None
+    fixings = part.fixings
+    return ExpectedHoles(
+        pattern=fixings.pattern,
+        places=fixings.places,
+        patches=tuple(hole.patch for hole in fixings.found.holes),
+        middles=fixings.middles,
+        diameter=fixings.rule.diameter,
+        distance=fixings.rule.distance,
+        depth=depth,
+        skin_area=fixings.skin_area,
+    )
 
 
 def _expected_seam(seam: SeamModel, moved: dict[str, float]) -> ExpectedSeam:
@@ -118,6 +142,8 @@ def _record(certificate: Certificate) -> CertificateModel:
         volume_error=certificate.volume_error,
         flat_area_error=certificate.flat_area_error,
         flat_length_error=certificate.flat_length_error,
+        holes=certificate.holes,
+        hole_error=certificate.hole_error,
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         clear=_clear([one for one in certificate.clear if one is not None]),

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
 from cadpanel.brep.building.normal_walls import strip_wall
+from cadpanel.brep.building.sheet_faces import SheetFaces
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.vectors import cross
 
 
-def chain_sheet(near: PanelShape, far: PanelShape) -> tuple[Sequence[TopoDS_Face], Sequence[TopoDS_Face]]:
-    """The faces of the skin `near`, and all faces of the sheet between it and the parallel skin `far`."""
+def chain_sheet(near: PanelShape, far: PanelShape) -> SheetFaces:
+    """The faces of the skin `near`, and of the sheet between it and the parallel skin `far`."""
     skin, other = skin_topology(near), skin_topology(far)
     skin_is_top = float((near.points[0] - far.points[0]) @ near.normals[0]) > 0.0
     top, bottom = (skin, other) if skin_is_top else (other, skin)
-    sheet = [*top.faces, *(TopoDS.Face_s(face.Reversed()) for face in bottom.faces), *_walls(near, top, bottom)]
-    return skin.faces, sheet
+    below = [TopoDS.Face_s(face.Reversed()) for face in bottom.faces]
+    own, away = (top.faces, below) if skin_is_top else (below, top.faces)
+    return SheetFaces(skin.faces, own, away, _walls(near, top, bottom))
 
 
 def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:

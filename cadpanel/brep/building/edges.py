@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.Geom import Geom_BSplineCurve, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
+from OCP.Geom import Geom_BSplineCurve, Geom_Circle, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
-from OCP.gp import gp_Elips
+from OCP.gp import gp_Circ, gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
@@ -45,6 +45,11 @@ def arc_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, section: EllipticSection
     turn = cross(section.cosine_axis / major, section.sine_axis / minor)
     conic = gp_Elips(kernel.conic_frame(section.center, turn, section.cosine_axis / major), major, minor)
     return _edge(Geom_Ellipse(conic), first, last, section.start, section.stop)
+
+
+def circle_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, circle: gp_Circ, start: float, stop: float) -> TopoDS_Edge:
+    """The arc of a circle between two vertices at the angles start and stop."""
+    return _edge(Geom_Circle(circle), first, last, start, stop)
 
 
 def spline_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, spline: Interpolant) -> TopoDS_Edge:

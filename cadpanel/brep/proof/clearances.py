@@ -114,7 +114,7 @@ def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     flat = [face for face in shared if solid.surfaces[face, 6] == 0.0]
     if not flat:
         return None
-    bounds = [(solid.piece_faces == face).any(axis=1) for face in flat]
+    bounds = [solid.bounds(face) for face in flat]
     leaves = [_farthest(solid.piece_ends[own].reshape(-1, 3), corners.reshape(-1, 3)) for own in bounds]
     place = int(np.argmax(leaves))
     surface = solid.surfaces[flat[place]]
@@ -126,9 +126,7 @@ def _walls_of_pieces(solid: ShapeFacts, corners: Array, chosen: IntArray) -> _Wa
     flat = corners.reshape(-1, 3)
     faces = []
     for pair in solid.piece_faces[chosen].tolist():
-        leaves = [
-            _farthest(solid.piece_ends[(solid.piece_faces == face).any(axis=1)].reshape(-1, 3), flat) for face in pair
-        ]
+        leaves = [_farthest(solid.piece_ends[solid.bounds(face)].reshape(-1, 3), flat) for face in pair]
         faces.append(pair[int(np.argmax(leaves))])
     own = np.asarray(np.isin(solid.piece_faces, faces).any(axis=1))
     others = solid.other_points[np.isin(solid.other_edges, faces).any(axis=1)]

@@ -9,6 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.brep.proof.hole_checks import ExpectedHoles
 
 PatchKind = Literal["plane", "cone", "cylinder"]
 
@@ -41,6 +42,7 @@ class ExpectedPanel:
         placed: where the origin of its coordinates lies in both files, mm.
         square: whether the walls of its sheet stand square to it; at the ends of round patches they are neither planes
             nor round then.
+        holes: through its sheet; None where it has none.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -54,10 +56,20 @@ class ExpectedPanel:
     flat: ExpectedFlat | None = None
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
     square: bool = False
+    holes: ExpectedHoles | None = None
 
     @property
     def walls(self) -> tuple[str, ...]:
-        """Kinds of the walls of its sheet: two ends and two sides, or one at each edge of a polygon."""
+        """Kinds of the walls of its sheet: two ends and two sides, or one at each edge of a polygon; and of holes."""
+        return (*self._outer_walls, *(() if self.holes is None else self.holes.walls))
+
+    @property
+    def smooth_edges(self) -> int:
+        """Straight edges of its solid whose two faces are tangent: between patches, and in holes."""
+        return 2 * len(self.kinds) - 2 + (0 if self.holes is None else self.holes.smooth_edges)
+
+    @property
+    def _outer_walls(self) -> tuple[str, ...]:
         if len(self.corners) == 1:
             return int(self.corners.shape[1]) * ("plane",)
         if not self.square:

@@ -12,10 +12,11 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
-from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
+from OCP.BRepTools import BRepTools
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.GProp import GProp_GProps
-from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -31,6 +32,9 @@ from cadpanel.geometry.sampled_curves import POINTS
 
 # By so many radians nothing as large as a panel is turned.
 _NO_TURN = 1e-13
+_EDGE_POINTS = 24
+RIM_POINTS = 2 * _EDGE_POINTS
+"""Points on a rim, which is two edges."""
 _ROUND = {GeomAbs_Cone: "cone", GeomAbs_Cylinder: "cylinder"}
 
 
@@ -99,6 +103,10 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     known = np.array([curve is not None for curve in curves], dtype=bool)
     pieces = [curve for curve in curves if curve is not None]
     solids = len(shapes_of(shape, TopAbs_SOLID))
+    rims = [wire for face in faces for wire in _inner_wires(face)]
+    on_rims = TopTools_IndexedMapOfShape()
+    for wire in rims:
+        TopExp.MapShapes_s(wire, TopAbs_EDGE, on_rims)
     return ShapeFacts(
         name=name,
         placed=placed,
@@ -114,9 +122,11 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         vertices=_vertices(shape),
         pieces=_pieces([curve for curve, _ in pieces]),
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
+        inner=np.array([on_rims.Contains(edge) for edge, _ in edges], dtype=bool)[known],
         piece_faces=lies_on[known],
         other_edges=lies_on[~known],
         other_points=_points([edge for (edge, _), curve in zip(edges, curves, strict=True) if curve is None]),
+        rims=np.array([_rim(wire) for wire in rims]).reshape(-1, RIM_POINTS, 3),
         surfaces=np.array([numbers or [np.nan] * 9 for _, numbers in surfaces]).reshape(-1, 9),
     )
 
@@ -189,6 +199,26 @@ def _ends(edge: TopoDS_Edge) -> list[list[float]]:
     return [_xyz(BRep_Tool.Pnt_s(end)) for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))]
 
 
+def _inner_wires(face: TopoDS_Face) -> list[TopoDS_Shape]:
+    """The rims of a face's holes."""
+    wires = shapes_of(face, TopAbs_WIRE)
+    if len(wires) < 2:
+        return []
+    outer = BRepTools.OuterWire_s(face)
+    return [wire for wire in wires if not wire.IsSame(outer)]
+
+
+def _rim(wire: TopoDS_Shape) -> Array:
+    """(RIM_POINTS, 3) points along a rim, as many on each edge; of one that has not two edges some are left out."""
+    return np.resize(np.concatenate([_along(edge, _EDGE_POINTS) for edge in edges_of(wire)]), (RIM_POINTS, 3))
+
+
+def _along(edge: TopoDS_Edge, count: int) -> Array:
+    curve = BRepAdaptor_Curve(edge)
+    places = np.linspace(curve.FirstParameter(), curve.LastParameter(), count, endpoint=False)
+    return np.array([_xyz(curve.Value(place)) for place in places.tolist()])
+
+
 def _points(edges: Sequence[TopoDS_Edge]) -> Array:
     """(o, POINTS, 3) points along edges."""
     found = []
@@ -206,10 +236,8 @@ def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | N
     if curve.GetType() == GeomAbs_Line:
         origin, target = np.array(_xyz(curve.Value(start))), np.array(_xyz(curve.Value(stop)))
         rows = [origin.tolist(), (target - origin).tolist(), [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    elif curve.GetType() == GeomAbs_Ellipse:
-        ellipse = curve.Ellipse()
-        axes: gp_Ax2 = ellipse.Position()
-        major, minor = ellipse.MajorRadius(), ellipse.MinorRadius()
+    elif curve.GetType() in (GeomAbs_Ellipse, GeomAbs_Circle):
+        axes, major, minor = _conic(curve)
         rows = [
             _xyz(axes.Location()),
             [major * part for part in _xyz(axes.XDirection())],
@@ -219,6 +247,15 @@ def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | N
     else:
         return None
     return rows, _ends(edge)
+
+
+def _conic(curve: BRepAdaptor_Curve) -> tuple[gp_Ax2, float, float]:
+    """Frame and half axes of an ellipse, or of a circle, which is one."""
+    if curve.GetType() == GeomAbs_Circle:
+        circle = curve.Circle()
+        return circle.Position(), circle.Radius(), circle.Radius()
+    ellipse = curve.Ellipse()
+    return ellipse.Position(), ellipse.MajorRadius(), ellipse.MinorRadius()
 
 
 def _pieces(rows: list[list[list[float]]]) -> CurvePieces:

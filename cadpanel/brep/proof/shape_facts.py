@@ -36,9 +36,11 @@ class ShapeFacts:
         vertices: (v, 3) mm.
         pieces: the edges that are lines or ellipses.
         piece_ends: (e, 2, 3) their two end vertices, mm.
+        inner: (e,) which of them are on the rims of holes.
         piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
         other_edges: (o, 2) the same for the edges that are neither.
         other_points: (o, q, 3) points along these, evenly by their parameter, both ends among them, mm.
+        rims: (r, q, 3) points along the rim of every hole in a face, mm.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
     """
 
@@ -56,9 +58,11 @@ class ShapeFacts:
     vertices: Array
     pieces: CurvePieces
     piece_ends: Array
+    inner: BoolArray
     piece_faces: IntArray
     other_edges: IntArray
     other_points: Array
+    rims: Array
     surfaces: Array
 
     def reach(self, directions: Array) -> tuple[Array, Array]:
@@ -66,6 +70,10 @@ class ShapeFacts:
         known, others = self.pieces.reach(directions), reach(self.other_points, directions)
         least, greatest = (np.concatenate(pair, axis=1) for pair in zip(known, others, strict=True))
         return least, greatest
+
+    def bounds(self, face: int) -> BoolArray:
+        """(e,) which of the pieces bound a face, those on the rims of its holes left out."""
+        return np.asarray((self.piece_faces == face).any(axis=1) & ~self.inner)
 
     @property
     def border(self) -> BoolArray:

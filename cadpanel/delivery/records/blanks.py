@@ -52,6 +52,24 @@ class BendModel(Record):
     hits: NonNegativeCount
 
 
+class FixingModel(Record):
+    """A fixing hole.
+
+    Attributes:
+        edge: along which it stands.
+        patch: of the panel in which it lies.
+        flat: its middle on the flat pattern, mm.
+        point: its middle on the panel's skin, mm.
+        normal: of the skin there, along which it is drilled.
+    """
+
+    edge: str
+    patch: NonNegativeCount
+    flat: Pair
+    point: Vector
+    normal: Vector
+
+
 class CutModel(Record):
     """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
 

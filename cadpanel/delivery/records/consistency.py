@@ -214,7 +214,7 @@ def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
 
 
 def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
-    for key in ("solids", "skins", "valid", "face_kinds", "names_kept"):
+    for key in ("solids", "skins", "valid", "face_kinds", "holes", "names_kept"):
         was, now = getattr(stated, key), getattr(found, key)
         if was != now:
             yield f"The certificate in the report says {key} = {was}, the files show {now}."
@@ -225,6 +225,7 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         ("volume_error", 1e-9),
         ("flat_area_error", 1e-9),
         ("flat_length_error", SAME_LENGTH),
+        ("hole_error", SAME_LENGTH),
         ("max_seam_gap", SAME_LENGTH),
     ):
         was, now = getattr(stated, key), getattr(found, key)

@@ -93,6 +93,7 @@ class SettingsModel(ComparisonSettingsModel):
         density: of the material, kg/m3.
         stock: sheets of the store, mm.
         facet_height: of bends that are pressed, mm.
+        fixings: of fixing holes the diameter, the largest pitch and the distance from edges, mm; None without.
     """
 
     feature: str
@@ -117,6 +118,7 @@ class SettingsModel(ComparisonSettingsModel):
     density: NonNegative = 2700.0
     stock: tuple[tuple[float, float], ...] = ()
     facet_height: NonNegative = 0.5
+    fixings: tuple[float, float, float] | None = None
 
     def sheet(self) -> SheetSettings:
         """The settings of the sheet, as they were asked for."""

@@ -9,6 +9,7 @@ from cadpanel.brep.building.holes import Hole
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
+from cadpanel.delivery.panel_returns import Returned, returned
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import PanelError
@@ -39,6 +40,7 @@ class PanelSheet:
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
         fixings: its holes; None where none are asked for. The skin has none.
+        returns: its sides that are folded; their cylinders and planes are patches of `shape`, not of `fitted`.
         moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
         notes: what the fabricator should know, one sentence each.
     """
@@ -51,6 +53,7 @@ class PanelSheet:
     area: float
     volume: float
     fixings: PanelFixings | None
+    returns: tuple[str, ...]
     moved: float
     notes: tuple[str, ...]
 
@@ -94,8 +97,9 @@ def build_panels(
     edges, square = seam_edges(shapes, seams), sheet.ends == "square"
     try:
         depth = sheet_depth(sheet.thickness, sheet.skin_side)
-        jointed = cut_to_seams(fitted, edges, sheet.joint, depth, square=square)
-        panels = _build_all(straight, jointed, sheet, shop or ShopSettings(), tell)
+        jointed = cut_to_seams(fitted, edges, sheet.joint, depth)
+        meeting = _meeting_edges(len(shapes), edges)
+        panels = _build_all(straight, jointed, meeting, (sheet, shop or ShopSettings()), tell)
     except PanelError:
         narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side, square=square)
         if narrow is None:
@@ -120,17 +124,32 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
+def _meeting_edges(count: int, seams: Sequence[SeamEdges]) -> list[set[str]]:
+    """Of each panel the edges at which it meets another one."""
+    found: list[set[str]] = [set() for _ in range(count)]
+    for seam in seams:
+        for panel, edge in zip(seam.panels, seam.edges, strict=True):
+            found[panel].add(edge)
+    return found
+
+
 def _build_all(
-    straight: Sequence[Straightened[Panel]], jointed: Jointed, sheet: SheetSettings, shop: ShopSettings, tell: Progress
+    straight: Sequence[Straightened[Panel]],
+    jointed: Jointed,
+    meeting: Sequence[set[str]],
+    asked: tuple[SheetSettings, ShopSettings],
+    tell: Progress,
 ) -> tuple[PanelSheet, ...]:
     built: list[PanelSheet] = []
-    for one, shape in zip(straight, jointed.shapes, strict=True):
-        built.append(_build(one, shape, sheet, shop))
+    for one, shape, edges in zip(straight, jointed.shapes, meeting, strict=True):
+        built.append(_build(one, returned(shape, edges, *asked), *asked))
         tell("build", len(built), len(straight))
     return tuple(built)
 
 
-def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings, shop: ShopSettings) -> PanelSheet:
+def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, shop: ShopSettings) -> PanelSheet:
+    depth = sheet_depth(sheet.thickness, sheet.skin_side)
+    shape = cut.shape.squared(depth) if sheet.ends == "square" else cut.shape
     fixings = panel_fixings(shape, sheet, shop)
     built = build_panel(shape, sheet.thickness, sheet.skin_side, _holes(fixings))
     notes = tuple(
@@ -147,8 +166,9 @@ def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings, sh
         area=shape.area(),
         volume=sheet_volume(shape, sheet.thickness, sheet.skin_side) - (fixings.volume if fixings is not None else 0.0),
         fixings=fixings,
+        returns=cut.sides,
         moved=straight.largest_move,
-        notes=notes,
+        notes=(*notes, *cut.notes),
     )
 
 

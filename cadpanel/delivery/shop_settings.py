@@ -18,6 +18,7 @@ DxfEntities = Literal["polyline", "lines"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
+_RETURNS = re.compile(r"\s*(\d+(?:\.\d+)?)\s*@\s*(\d+(?:\.\d+)?)\s*")
 _FIXINGS = re.compile(r"\s*(\d+(?:\.\d+)?)\s*@\s*(\d+(?:\.\d+)?)\s*,\s*(\d+(?:\.\d+)?)\s*")
 _NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _LONGEST_LAYER = 255
@@ -42,6 +43,8 @@ class ShopSettings:
         stock: sheets that the store has, length and width, mm.
         facet_height: how far a bend that is pressed in facets may lie from the round one, mm.
         fixings: fixing holes along edges: their diameter, largest pitch, and distance from the edge, mm; None for none.
+        returns: legs folded inwards along flat sides that meet nobody: their length on the outer face, and the inner
+            radius of the fold, mm; None for none.
     """
 
     outputs: str | Sequence[str] | None = setting(
@@ -134,6 +137,16 @@ class ShopSettings:
         ),
     )
 
+    returns: Sequence[float] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: returns_of(text),
+            metavar="MM@RADIUS",
+            help="Fold flat sides that meet nobody inwards: length on the outer face, and inner radius.",
+        ),
+    )
+
     def __post_init__(self) -> None:
         """Check every setting, and bring those of several parts into one form.
 
@@ -152,6 +165,7 @@ class ShopSettings:
         object.__setattr__(self, "only", _names("panels", self.only) if self.only else ())
         object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
         object.__setattr__(self, "fixings", None if self.fixings is None else _checked_fixings(self.fixings))
+        object.__setattr__(self, "returns", None if self.returns is None else _checked_returns(self.returns))
         object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
 
     def layer(self, role: str) -> str:
@@ -182,6 +196,18 @@ def fixings_of(text: str) -> tuple[float, ...]:
         raise SettingsError(
             f"fixing holes are written like 6.5@400,20 (diameter, pitch, distance from edges), not {text!r}"
         )
+    return tuple(map(float, found.groups()))
+
+
+def returns_of(text: str) -> tuple[float, ...]:
+    """Length and inner radius from "30@3".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = _RETURNS.fullmatch(text)
+    if found is None:
+        raise SettingsError(f"returns are written like 30@3, length and inner radius, not {text!r}")
     return tuple(map(float, found.groups()))
 
 
@@ -244,6 +270,17 @@ def _checked_fixings(given: object) -> tuple[float, float, float]:
     return diameter, pitch, distance
 
 
+def _checked_returns(given: object) -> tuple[float, float]:
+    numbers = tuple(given) if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    good = [isinstance(number, int | float) and math.isfinite(number) for number in numbers]
+    if len(numbers) != 2 or not all(good):
+        raise SettingsError(f"returns have a length and an inner radius in mm, like (30, 3), not {given!r}")
+    length, radius = map(float, numbers)
+    require("length of returns", length, least=1.0, most=1000.0, unit=" mm")
+    require("inner radius of returns", radius, least=0.1, most=1000.0, unit=" mm")
+    return length, radius
+
+
 class ShopKeywords(TypedDict, total=False):
     """The fields of `ShopSettings` as keywords, which type checkers want written out; a test holds the two alike."""
 
@@ -261,3 +298,4 @@ class ShopKeywords(TypedDict, total=False):
     stock: Sequence[tuple[float, float]]
     facet_height: float
     fixings: Sequence[float] | None
+    returns: Sequence[float] | None

@@ -20,6 +20,7 @@ from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
+from cadpanel.geometry.returns import PATCHES
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -61,6 +62,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             placed=contents.placed,
             square=contents.sheet.ends == "square",
             holes=_expected_holes(part, depth),
+            folded=(PATCHES * ("side 0" in panel.returns), PATCHES * ("side 1" in panel.returns)),
         )
         for panel, part in zip(contents.records, contents.parts, strict=True)
     ]

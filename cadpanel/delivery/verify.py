@@ -16,6 +16,7 @@ from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
+from cadpanel.delivery.records.return_checks import return_faults
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.errors import DeliveryError
@@ -103,6 +104,7 @@ def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: H
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),
+        *return_faults(contents),
         *(fault for proof in found.values() for fault in proof.failures),
     )
     numbers = {name: proof.numbers for name, proof in found.items()}

@@ -36,9 +36,7 @@ class Jointed:
     joints: tuple[Joint, ...]
 
 
-def cut_to_seams(
-    shapes: Sequence[Panel], seams: Sequence[SeamEdges], joint: float, depth: float, *, square: bool = False
-) -> Jointed:
+def cut_to_seams(shapes: Sequence[Panel], seams: Sequence[SeamEdges], joint: float, depth: float) -> Jointed:
     """Cut panels back from their seams.
 
     Args:
@@ -46,7 +44,6 @@ def cut_to_seams(
         seams: which of their edges meet.
         joint: clear width between two sheets, mm.
         depth: the other face of a sheet is `offset(depth)`, mm.
-        square: whether walls stand square to the sheet, where such a wall in a joint's plane has its shorter face.
 
     Raises:
         PanelError: nothing is left of a panel, or two fold back on each other.
@@ -62,8 +59,7 @@ def cut_to_seams(
         )
         for seam, plane in zip(seams, planes, strict=True)
     )
-    built = [shape.squared(depth) for shape in cut] if square else cut
-    return Jointed(shapes=tuple(built), joints=joints)
+    return Jointed(shapes=tuple(cut), joints=joints)
 
 
 def seam_planes(shapes: Sequence[Panel], seams: Sequence[SeamEdges]) -> tuple[CutPlane, ...]:

@@ -112,7 +112,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         " --blend 500-900 --blend N-02=45-62.5%"
         " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
         " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
-        " --stock 1500x3000,2500x4000 --facet-height 0.3 --fixings 8@350,25"
+        " --stock 1500x3000,2500x4000 --facet-height 0.3 --fixings 8@350,25 --returns 45@6"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
     assert answer.code in (0, 1), answer.err
@@ -160,6 +160,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "stock": [[1500.0, 3000.0], [2500.0, 4000.0]],
         "facet_height": 0.3,
         "fixings": [8.0, 350.0, 25.0],
+        "returns": [45.0, 6.0],
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -402,8 +403,9 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),
         (
             "--fixings 6.5@400",
-            "Fixing holes are written like 6.5@400,20, diameter, pitch and edge distance, not '6.5@400'.",
+            "Fixing holes are written like 6.5@400,20 (diameter, pitch, distance from edges), not '6.5@400'.",
         ),
+        ("--returns 30", "Returns are written like 30@3, length and inner radius, not '30'."),
         ("--k-factor 2", "The K-factor must be between 0 and 1, not 2."),
     ],
 )

@@ -22,6 +22,8 @@ from cadpanel.errors import SettingsError
         ("outputs", "", "outputs are chosen by their names"),
         ("only", ("a", " "), "panels are chosen by their names"),
         ("stock", ((1500.0,),), "a sheet of the stock has two sides"),
+        ("returns", (30.0,), "returns have a length and an inner radius in mm"),
+        ("returns", (30.0, 0.0), "the inner radius of returns must be between 0.1 mm and 1000 mm"),
         ("fixings", (6.5, 400.0), "have a diameter, a pitch and a distance from edges"),
         ("fixings", (6.5, 14.0, 20.0), "the pitch of fixing holes must be at least 14.3 mm, not 14 mm"),
         ("fixings", (6.5, 400.0, 7.0), "the distance of fixing holes from the edge must be at least 7.8 mm"),

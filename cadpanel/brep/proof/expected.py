@@ -43,6 +43,7 @@ class ExpectedPanel:
         square: whether the walls of its sheet stand square to it; at the ends of round patches they are neither planes
             nor round then.
         holes: through its sheet; None where it has none.
+        folded: patches beyond the fit's at side 0 and at side 1: those of returns.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -57,6 +58,7 @@ class ExpectedPanel:
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
     square: bool = False
     holes: ExpectedHoles | None = None
+    folded: tuple[int, int] = (0, 0)
 
     @property
     def walls(self) -> tuple[str, ...]:

@@ -142,6 +142,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         fitted=fitted_model(built.fitted),
         patches=patch_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
+        returns=built.returns,
         moved=built.moved,
         notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
     )

@@ -134,6 +134,7 @@ class PanelModel(Record):
         bevels: of each edge the least and the largest angle between wall and sheet normal, square to the edge; positive
             where the outer face is the shorter one. Along straight edges both are one; 0 where the wall is square.
         fixings: its holes, in the order of the flat pattern's outline.
+        returns: its sides that are folded inwards; each is two patches, a cylinder and a plane beyond it.
     """
 
     name: str
@@ -159,6 +160,7 @@ class PanelModel(Record):
     cuts: tuple[CutModel, ...] = ()
     bevels: dict[Edge, Pair] = Field(default_factory=dict)
     fixings: tuple[FixingModel, ...] = ()
+    returns: tuple[Edge, ...] = ()
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:

@@ -94,6 +94,7 @@ class SettingsModel(ComparisonSettingsModel):
         stock: sheets of the store, mm.
         facet_height: of bends that are pressed, mm.
         fixings: of fixing holes the diameter, the largest pitch and the distance from edges, mm; None without.
+        returns: of folded sides the length on the outer face and the inner radius, mm; None without.
     """
 
     feature: str
@@ -119,6 +120,7 @@ class SettingsModel(ComparisonSettingsModel):
     stock: tuple[tuple[float, float], ...] = ()
     facet_height: NonNegative = 0.5
     fixings: tuple[float, float, float] | None = None
+    returns: tuple[float, float] | None = None
 
     def sheet(self) -> SheetSettings:
         """The settings of the sheet, as they were asked for."""

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.returns import SIDES, ReturnRule, foldable_sides, with_returns
-from cadpanel.geometry.shape import PanelShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +40,7 @@ def returned(shape: Panel, meeting: Collection[str], sheet: SheetSettings, shop:
     """
     if shop.returns is None:
         return Returned(shape=shape)
-    if not isinstance(shape, PanelShape):
+    if not isinstance(shape, Chain):
         return Returned(shape=shape, notes=("It has no returns: only panels with two sides have.",))
     length, radius = shop.returns
     flat = foldable_sides(shape)

@@ -16,8 +16,8 @@ from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
-from cadpanel.delivery.records.return_checks import return_faults
 from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.sheet_checks import sheet_depth

@@ -11,15 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
+from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch, PlanePatch
-from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import SkinSide
 
+SomeChain = TypeVar("SomeChain", bound=Chain)
 SIDES = ("side 0", "side 1")
 PATCHES = 2
 """Patches that a return adds to its side."""
@@ -49,14 +51,14 @@ class _Fold:
     leg: float
 
 
-def foldable_sides(shape: PanelShape) -> tuple[str, ...]:
+def foldable_sides(shape: Chain) -> tuple[str, ...]:
     """The sides that are flat."""
     return tuple(side for place, side in enumerate(SIDES) if isinstance(shape.patches[-place], PlanePatch))
 
 
 def with_returns(
-    shape: PanelShape, sides: Iterable[str], rule: ReturnRule, thickness: float, skin_side: SkinSide
-) -> PanelShape:
+    shape: SomeChain, sides: Iterable[str], rule: ReturnRule, thickness: float, skin_side: SkinSide
+) -> SomeChain:
     """The chain with returns along some of its flat sides, folded away from its outside.
 
     Args:
@@ -81,7 +83,7 @@ def tangent_length(rule: ReturnRule, thickness: float, angle: float) -> float:
     return (rule.inner_radius + thickness) * math.tan(0.5 * angle)
 
 
-def _fold(shape: PanelShape, place: int, rule: ReturnRule, thickness: float, skin_side: SkinSide) -> _Fold:
+def _fold(shape: Chain, place: int, rule: ReturnRule, thickness: float, skin_side: SkinSide) -> _Fold:
     outward = 1.0 if place else -1.0
     binormal = shape.binormals()[-place]
     lean = float(shape.side_leans[place])
@@ -100,7 +102,7 @@ def _fold(shape: PanelShape, place: int, rule: ReturnRule, thickness: float, ski
     return _Fold(begins, outward, angle, rule.inner_radius + thickness - out, leg)
 
 
-def _folded(shape: PanelShape, place: int, fold: _Fold) -> PanelShape:
+def _folded(shape: SomeChain, place: int, fold: _Fold) -> SomeChain:
     """The chain with two more patches beyond one of its sides."""
     direction, normal, binormal = shape.directions[-place], shape.normals[-place], shape.binormals()[-place]
     cosine, sine = math.cos(fold.angle), math.sin(fold.angle)

@@ -12,7 +12,7 @@ from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.panel_returns import returned
 from cadpanel.delivery.records.report import ReportModel
-from cadpanel.delivery.records.return_checks import return_faults
+from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify

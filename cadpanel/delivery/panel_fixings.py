@@ -10,7 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.geometry.fixings import FixingRule, Fixings, fixings, hole_bending
+from cadpanel.geometry.fixings import FixingRule, Fixings, Hole, fixings, hole_bending
 from cadpanel.geometry.flat_places import FlatPlace, flat_places
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import sheet_depth
@@ -38,6 +38,14 @@ class PanelFixings:
     area: float
     skin_area: float
     volume: float
+
+    @property
+    def holes(self) -> tuple[Hole, ...]:
+        """The same for those who drill them."""
+        return tuple(
+            Hole(patch=hole.patch, place=self.places[hole.patch], middle=hole.place, diameter=self.rule.diameter)
+            for hole in self.found.holes
+        )
 
     @property
     def middles(self) -> Array:

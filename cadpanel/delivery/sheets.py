@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from cadpanel.brep.building.holes import Hole
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
@@ -151,7 +150,7 @@ def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, s
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
     shape = cut.shape.squared(depth) if sheet.ends == "square" else cut.shape
     fixings = panel_fixings(shape, sheet, shop)
-    built = build_panel(shape, sheet.thickness, sheet.skin_side, _holes(fixings))
+    built = build_panel(shape, sheet.thickness, sheet.skin_side, () if fixings is None else fixings.holes)
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
@@ -170,12 +169,3 @@ def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, s
         moved=straight.largest_move,
         notes=(*notes, *cut.notes),
     )
-
-
-def _holes(fixings: PanelFixings | None) -> list[Hole]:
-    if fixings is None:
-        return []
-    return [
-        Hole(patch=hole.patch, place=fixings.places[hole.patch], middle=hole.place, diameter=fixings.rule.diameter)
-        for hole in fixings.found.holes
-    ]

@@ -11,7 +11,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
@@ -20,7 +20,7 @@ from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
-from cadpanel.geometry.returns import PATCHES
+from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -62,7 +62,13 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             placed=contents.placed,
             square=contents.sheet.ends == "square",
             holes=_expected_holes(part, depth),
-            folded=(PATCHES * ("side 0" in panel.returns), PATCHES * ("side 1" in panel.returns)),
+            folded=_folded(panel),
+            sheet=Sheet(
+                shape=recorded_shape(panel, depth, square=contents.sheet.ends == "square"),
+                thickness=contents.sheet.thickness,
+                skin_side=contents.sheet.skin_side,
+                holes=() if part.fixings is None else part.fixings.holes,
+            ),
         )
         for panel, part in zip(contents.records, contents.parts, strict=True)
     ]
@@ -92,6 +98,12 @@ def _expected_holes(part: FlatPart, depth: float) -> ExpectedHoles | None:
         depth=depth,
         skin_area=fixings.skin_area,
     )
+
+
+def _folded(panel: PanelModel) -> tuple[int, int]:
+    """How many patches lie beyond the fit's at side 0 and at side 1."""
+    first, last = unfolded_rulings(panel)
+    return first, len(panel.corners[0]) - last
 
 
 def _expected_seam(seam: SeamModel, moved: dict[str, float]) -> ExpectedSeam:

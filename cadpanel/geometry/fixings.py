@@ -76,6 +76,23 @@ class Fixings:
     short: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hole:
+    """A hole that is round on the flat pattern.
+
+    Attributes:
+        patch: in which it lies.
+        place: of that patch, on the skin and in the plane.
+        middle: (2,) in the plane, mm.
+        diameter: mm.
+    """
+
+    patch: int
+    place: FlatPlace
+    middle: Array
+    diameter: float
+
+
 def fixings(pattern: FlatPattern, rule: FixingRule) -> Fixings:
     """The holes of a flat pattern: along every edge, in each patch a row of its own."""
     holes: list[Fixing] = []

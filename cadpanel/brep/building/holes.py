@@ -22,28 +22,11 @@ from cadpanel.brep.building.sheet_faces import SheetFaces
 from cadpanel.brep.building.surfaces import plane_spline
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.brep.kernel.shapes import children
-from cadpanel.geometry.flat_places import FlatPlace
+from cadpanel.geometry.fixings import Hole
 
 _BUILDER = BRep_Builder()
 _HALVES = ((0.0, math.pi), (math.pi, 2.0 * math.pi))
 """A wall is two faces, so that none of them closes on itself."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Hole:
-    """A hole that is round on the flat pattern.
-
-    Attributes:
-        patch: in which it lies.
-        place: of that patch, on the skin and in the plane.
-        middle: (2,) in the plane, mm.
-        diameter: mm.
-    """
-
-    patch: int
-    place: FlatPlace
-    middle: Array
-    diameter: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

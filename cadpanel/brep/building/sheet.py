@@ -14,9 +14,10 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 from cadpanel.brep.building.chain_sheet import chain_sheet
 from cadpanel.brep.building.chain_skin import chain_skin
 from cadpanel.brep.building.edges import shell_of
-from cadpanel.brep.building.holes import Hole, drilled
+from cadpanel.brep.building.holes import drilled
 from cadpanel.brep.building.polygon_sheet import polygon_sheet, polygon_skin
 from cadpanel.brep.building.sheet_faces import SheetFaces
+from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, other_face, sheet_depth

@@ -20,7 +20,8 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
 from cadpanel.brep.proof.hole_checks import check_holes
 from cadpanel.brep.proof.overlaps import unparted
-from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files
+from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, rebuild
+from cadpanel.brep.proof.rebuilt import unlike_rebuilt
 from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.geometry.kink import edge_angles
@@ -132,6 +133,8 @@ def certify(
             if panel.flat is not None:
                 read = solid_of[panel.name], skin_of[panel.name]
                 flats.append(FlatFacts(panel.flat, panel.far_planes, *read, panel.holes))
+    sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None}
+    failures += unlike_rebuilt([*sheets], rebuild(panels_step, [*sheets.values()], helper), solid_of, skin_of)
     flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)
     clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)

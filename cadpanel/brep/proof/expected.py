@@ -10,6 +10,9 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
+from cadpanel.geometry.fixings import Hole
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.sheet_checks import SkinSide
 
 PatchKind = Literal["plane", "cone", "cylinder"]
 
@@ -25,6 +28,16 @@ class Fitted:
 
     corners: Array
     cuts: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sheet:
+    """What a sheet is built from: the panel, its thickness in mm, on which side of the sheet the skin is, and holes."""
+
+    shape: Panel
+    thickness: float
+    skin_side: SkinSide
+    holes: tuple[Hole, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +57,7 @@ class ExpectedPanel:
             nor round then.
         holes: through its sheet; None where it has none.
         folded: patches beyond the fit's at side 0 and at side 1: those of returns.
+        sheet: what both files hold of it, to be built anew; None to leave that alone.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -59,6 +73,7 @@ class ExpectedPanel:
     square: bool = False
     holes: ExpectedHoles | None = None
     folded: tuple[int, int] = (0, 0)
+    sheet: Sheet | None = None
 
     @property
     def walls(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.proof.boundary import Boundary
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
 from cadpanel.geometry.sampled_curves import reach
 
@@ -42,6 +43,7 @@ class ShapeFacts:
         other_points: (o, q, 3) points along these, evenly by their parameter, both ends among them, mm.
         rims: (r, q, 3) points along the rim of every hole in a face, mm.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
+        boundary: all that bounds it.
     """
 
     name: str
@@ -64,6 +66,7 @@ class ShapeFacts:
     other_points: Array
     rims: Array
     surfaces: Array
+    boundary: Boundary
 
     def reach(self, directions: Array) -> tuple[Array, Array]:
         """Least and greatest (d, e + o) inner product of directions (d, 3) with the points of all edges."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Positive, Record, Vector
+from cadpanel.delivery.records.jsonfile import Direction, NonNegative, NonNegativeCount, Positive, Record, Vector
 
 Pair = tuple[float, float]
 
@@ -73,5 +73,5 @@ class FixingModel(Record):
 class CutModel(Record):
     """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
 
-    normal: Vector
+    normal: Direction
     offset: float

@@ -13,6 +13,7 @@ from cadpanel.delivery.records.report import PanelModel
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.returns import PATCHES, SIDES
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.vectors import cross, unit
 
@@ -72,6 +73,32 @@ def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> 
         side_leans=np.zeros(2) if square else _side_leans(moves, cross(directions, normals), patches),
         square=square,
     )
+
+
+def unfolded_rulings(panel: PanelModel) -> tuple[int, int]:
+    """From which to which corner of its rows a panel is as it was fitted: beyond lie its returns."""
+    first, last = (PATCHES * (side in panel.returns) for side in SIDES)
+    return first, len(panel.corners[0]) - last
+
+
+def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
+    """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
+
+    Args:
+        panel: the record.
+        depth: where the sheet's other face lies, mm along the skin's normal.
+
+    Raises:
+        DeliveryError: the record does not say how the panel is cut, or what part it is.
+    """
+    if panel.fitted is None:
+        return recorded_shape(panel, depth)
+    own = slice(*unfolded_rulings(panel))
+    moves = (np.array(panel.other_face) - np.array(panel.corners))[:, own]
+    other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
+    patches = panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
+    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other, "patches": patches}
+    return recorded_shape(panel.model_copy(update=uncut), depth)
 
 
 def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:

@@ -154,7 +154,8 @@ def compare(
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
     """
-    from cadpanel.delivery.folder import COMPARISON, delivery_folder
+    from cadpanel.delivery.folder import delivery_folder
+    from cadpanel.delivery.own_files import COMPARISON
     from cadpanel.delivery.records.comparison import write_comparison
     from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference

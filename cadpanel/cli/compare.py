@@ -8,7 +8,8 @@ from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.steps import Steps, steps
-from cadpanel.delivery.folder import COMPARISON, delivery_folder
+from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.own_files import COMPARISON
 from cadpanel.delivery.records.comparison import ComparisonModel, write_comparison
 from cadpanel.delivery.records.settings import OF_A_COLUMN
 from cadpanel.fitting.settings import LIKE_THE_PAPER, FitSettings

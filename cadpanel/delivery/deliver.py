@@ -9,10 +9,11 @@ from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.delivery.chosen_panels import chosen_panels
-from cadpanel.delivery.folder import REPORT, delivery_folder
+from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.outputs.step_files import SKINS
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.from_fit import (
     baselines_record,

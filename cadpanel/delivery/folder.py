@@ -1,41 +1,24 @@
 """A folder that is written whole or not at all.
 
-Everything goes into a hidden folder beside the target, so on the same disk; a rename then puts it in place in one step.
-Whatever goes wrong before that leaves the target as it was, and nothing else behind.
+Everything goes into a hidden folder beside the target, so on the same disk, the manifest last; then the two exchange
+their names in one step, so that there is a whole delivery before, during and after. Whatever goes wrong before that
+leaves the target as it was, and nothing else behind; what a killed run leaves is cleared by the next one.
 """
 
 from __future__ import annotations
 
 import errno
 import os
-import re
-import secrets
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.exchange import exchanged, make_lasting, put_where_nothing_is
+from cadpanel.delivery.manifest import write_manifest
+from cadpanel.delivery.own_files import MARKS_OF_A_DELIVERY, changed_since, is_ours, strangers
+from cadpanel.delivery.work_folders import aside_of, clear_left_behind, work_folder
 from cadpanel.errors import CadpanelError, DeliveryError
-
-REPORT = "report.json"
-COMPARISON = "compare.json"
-STUDY, STUDY_TABLE = "study.json", "study.csv"
-STUDY_PLOTS = ("study.png", "study.svg")
-
-MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY)
-"""A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
-OWN_FILES = frozenset(
-    {REPORT, COMPARISON, STUDY, STUDY_TABLE, *STUDY_PLOTS, *(name for output in OUTPUTS for name in output.files)}
-)
-"""All that cadpanel writes; whatever else stands in a delivery is someone's work and is never deleted."""
-OWN_FOLDERS = {folder: mark for output in OUTPUTS for folder, mark in output.folders.items()}
-"""Folders that cadpanel writes, and how every file in one of them begins."""
-LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
-"""What file managers leave in a folder that people look into; it goes with the delivery."""
-
-_OWN_SCHEMA = re.compile(rb'"schema"\s*:\s*"cadpanel\.')
-_MARK_BYTES = 4096
 
 _DISK_FAULTS = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EFBIG})
 
@@ -58,10 +41,13 @@ def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
     place = Path(os.path.realpath(target))  # a link to a folder keeps pointing at it
     _refuse_if_taken(place, target, overwrite=overwrite)
     made = _make_parents(place, target)
-    work = place.parent / f".cadpanel-{secrets.token_hex(4)}.part"
+    clear_left_behind(place.parent)
+    work = work_folder(place)
     try:
         _make_folder(work, target)
         yield work
+        write_manifest(work)
+        make_lasting(work)
         _refuse_if_taken(place, target, overwrite=overwrite)  # a fit takes minutes: someone may have come first
         replaced = _put_in_place(work, place, target)
     except BaseException as error:  # an interrupt must clean up as well
@@ -84,17 +70,22 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
             raise DeliveryError(f"'{target}' is a file: name a folder to write the delivery to.")
         if not overwrite:
             raise DeliveryError(f"'{target}' exists already: name another folder, or replace it with --overwrite.")
-        names = {entry.name for entry in place.iterdir()} - LITTER
-        if names and not any(_is_mark(place / mark) for mark in MARKS_OF_A_DELIVERY):
+        if not is_ours(place):
             raise DeliveryError(
                 f"'{target}' holds files but no {' or '.join(MARKS_OF_A_DELIVERY)} of cadpanel, so it is not a "
                 "delivery and is not overwritten: name another folder."
             )
-        strange = names - OWN_FILES - OWN_FOLDERS.keys() | _strangers(place)
+        strange = strangers(place)
         if strange:
             raise DeliveryError(
                 f"'{target}' also holds '{min(strange)}', which cadpanel did not write and --overwrite would "
                 "delete: move it elsewhere, or name another folder."
+            )
+        changed = changed_since(place)
+        if changed:
+            raise DeliveryError(
+                f"'{changed[0]}' in '{target}' was changed since cadpanel wrote it, and --overwrite would delete that: "
+                "move it elsewhere, or name another folder."
             )
     except DeliveryError:
         raise
@@ -102,32 +93,6 @@ def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
         return  # nothing there; whether it can be made is for _make_parents to say
     except OSError as error:
         raise DeliveryError(_sentence(target, error)) from error
-
-
-def _strangers(place: Path) -> set[str]:
-    """What stands in the folders that cadpanel writes and does not begin as its own files do."""
-    found: set[str] = set()
-    for folder, mark in OWN_FOLDERS.items():
-        if not (place / folder).is_dir():
-            found |= {folder} if os.path.lexists(place / folder) else set()
-            continue
-        for entry in (place / folder).iterdir():
-            if entry.name not in LITTER and not (entry.is_file() and _begins(entry, mark)):
-                found.add(f"{folder}/{entry.name}")
-    return found
-
-
-def _begins(path: Path, mark: bytes) -> bool:
-    with path.open("rb") as file:
-        return file.read(len(mark)) == mark
-
-
-def _is_mark(path: Path) -> bool:
-    """Whether a file begins as our report or comparison does; other programs have files of these names too."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as file:
-        return _OWN_SCHEMA.search(file.read(_MARK_BYTES)) is not None
 
 
 def _make_parents(place: Path, target: Path) -> list[Path]:
@@ -156,15 +121,29 @@ def _make_folder(work: Path, target: Path) -> None:
 
 
 def _put_in_place(work: Path, place: Path, target: Path) -> Path | None:
-    """Rename the finished folder to its place; an old delivery stands aside until then, and returns on any error.
+    """Let the finished folder take its place; an old delivery is never out of it for longer than the system needs.
 
     Returns:
         Where the old delivery stands now, to be deleted; None if there was none.
     """
-    if not place.exists():
-        _rename(work, place, target)
-        return None
-    aside = work.with_suffix(".old")
+    try:
+        if not os.path.lexists(place):
+            put_where_nothing_is(work, place)
+            return None
+        if exchanged(work, place):
+            return work
+    except FileExistsError as error:
+        raise DeliveryError(
+            f"'{target}' exists already: name another folder, or replace it with --overwrite."
+        ) from error
+    except OSError as error:
+        raise DeliveryError(_sentence(target, error)) from error
+    return _stand_aside(work, place, target)
+
+
+def _stand_aside(work: Path, place: Path, target: Path) -> Path:
+    """Two renames where the system exchanges nothing; the old delivery returns on any error."""
+    aside = aside_of(work, place)
     _rename(place, aside, target)
     try:
         _rename(work, place, target)

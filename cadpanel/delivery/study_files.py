@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cadpanel.delivery.folder import STUDY, STUDY_PLOTS, STUDY_TABLE
+from cadpanel.delivery.own_files import STUDY, STUDY_PLOTS, STUDY_TABLE
 from cadpanel.delivery.records.study import StudyModel, write_study
 from cadpanel.delivery.study_plot import MISSING, can_plot, plot_study
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,9 +10,10 @@ from cadpanel.brep.proof.parallel import Helper
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.manifest import MANIFEST, changed_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.measured_again import measured_faults, reading_again
@@ -68,7 +69,7 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
     place = Path(folder)
     if not place.is_dir():
         raise DeliveryError(f"'{folder}' is not a folder: name one that 'cadpanel fit' wrote.")
-    _demand_files(place, (REPORT,))
+    _demand_files(place, (REPORT, MANIFEST))
     report = read_report(place / REPORT)
     try:
         outputs, contents = chosen_outputs(report.settings.outputs, OUTPUTS), _contents(report)
@@ -76,12 +77,17 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
-    failures = (*certificate.failures, *check_report(report, certificate))
+    failures = (*_changed(place), *certificate.failures, *check_report(report, certificate))
     if reference is None:
         return Verification(report=report, certificate=certificate, failures=failures, unproved=BY_REFERENCE + BY_A_FIT)
     file = Path(reference)
     again = measured_faults(report, read_reference(file, reading_again(report.reference, file)))
     return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=BY_A_FIT)
+
+
+def _changed(place: Path) -> Iterator[str]:
+    for name in changed_files(place):
+        yield f"'{name}' is not the file that was delivered: its size or SHA-256 is not that in {MANIFEST}."
 
 
 def _demand_files(place: Path, names: Sequence[str]) -> None:

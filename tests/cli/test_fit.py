@@ -30,9 +30,10 @@ PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
 
 # ------------------------------------------------------------------------------------------------------- it goes well
-def test_a_delivery_holds_three_files_and_nothing_else(delivered: Path) -> None:
+def test_a_delivery_holds_its_files_and_nothing_else(delivered: Path) -> None:
     assert sorted(path.name for path in delivered.iterdir()) == [
         "flat",
+        "manifest.json",
         "panels.step",
         "report.json",
         "schedule.csv",

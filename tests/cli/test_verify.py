@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from cadpanel.brep.step.file import read_step_shapes
+from cadpanel.delivery.manifest import write_manifest
 from tests.cli.conftest import Run
 
 
@@ -40,6 +41,7 @@ def edit(folder: Path, change: Callable[[dict[str, Any]], None]) -> None:
     report = json.loads(path.read_text(encoding="utf-8"))
     change(report)
     path.write_text(json.dumps(report), encoding="utf-8")
+    write_manifest(folder)  # as whoever changes a report can
 
 
 def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
@@ -124,6 +126,23 @@ def test_a_number_that_was_changed_is_named(
     assert answer.code in (1, 2), answer.out
     assert words in answer.err
     assert "Everything holds." not in answer.out
+
+
+@pytest.mark.parametrize("name", ["panels.step", "setting_out.csv", "flat/N-02.dxf"])
+def test_a_file_that_was_changed_in_any_byte_is_named(run: Run, delivery: Path, name: str) -> None:
+    data = (delivery / name).read_bytes()
+    (delivery / name).write_bytes(data + b" ")
+    answer = run("verify", delivery)
+    assert answer.code == 1
+    assert f"'{name}' is not the file that was delivered" in answer.err
+
+
+def test_a_key_that_stands_twice_is_refused(run: Run, delivery: Path) -> None:
+    text = (delivery / "report.json").read_text(encoding="utf-8")
+    (delivery / "report.json").write_text(text.replace('"thickness"', '"thickness": 9.0, "thickness"', 1))
+    answer = run("verify", delivery)
+    assert answer.code == 2
+    assert 'the key "thickness" stands in it twice' in answer.err
 
 
 def test_a_step_file_of_another_delivery_is_found_out(run: Run, delivery: Path) -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.from_fit import panel_records
 from cadpanel.delivery.records.from_shape import patch_models

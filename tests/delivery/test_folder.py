@@ -6,13 +6,20 @@ import errno
 import os
 import re
 import shutil
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from cadpanel.delivery.folder import MARKS_OF_A_DELIVERY, delivery_folder
+from cadpanel.delivery import folder as folder_module
+from cadpanel.delivery.folder import delivery_folder
+from cadpanel.delivery.manifest import changed_files
+from cadpanel.delivery.own_files import MARKS_OF_A_DELIVERY
 from cadpanel.delivery.records.jsonfile import Record, write_json
 from cadpanel.errors import DeliveryError, PanelError
+from tests.thorough import cases
 
 MARK = '{\n  "schema": "cadpanel.report/1"\n}\n'
 
@@ -27,7 +34,7 @@ def everything_below(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
-WHOLE = ["panels.step", "report.json"]
+WHOLE = ["manifest.json", "panels.step", "report.json"]
 
 
 def test_a_finished_folder_stands_in_its_place_and_alone(tmp_path: Path) -> None:
@@ -132,7 +139,7 @@ def test_a_file_that_comes_into_being_during_the_work_is_not_deleted_either(tmp_
 
     with pytest.raises(DeliveryError, match=r"also holds 'notes\.txt'"):
         save_something_meanwhile()
-    assert everything_below(tmp_path) == ["out", "out/notes.txt", *(f"out/{name}" for name in WHOLE)]
+    assert everything_below(tmp_path) == sorted(["out", "out/notes.txt", *(f"out/{name}" for name in WHOLE)])
 
 
 def test_a_folder_that_came_into_being_during_the_work_is_not_replaced(tmp_path: Path) -> None:
@@ -267,8 +274,9 @@ def test_a_name_that_is_too_long_is_one_sentence(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("error", [OSError(errno.EBUSY, "Device or resource busy"), KeyboardInterrupt()])
-def test_the_old_delivery_returns_when_the_new_one_cannot_take_its_place(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException
+@pytest.mark.parametrize("exchanges", [True, False])
+def test_the_old_delivery_stays_when_the_new_one_cannot_take_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException, *, exchanges: bool
 ) -> None:
     target = tmp_path / "out"
     deliver(target, "old")
@@ -279,10 +287,75 @@ def test_the_old_delivery_returns_when_the_new_one_cannot_take_its_place(
             raise error
         return rename(self, destination)
 
+    def fail(_one: Path, _other: Path) -> bool:
+        if exchanges:
+            raise error
+        return False
+
+    monkeypatch.setattr(folder_module, "exchanged", fail)
     monkeypatch.setattr(Path, "rename", fail_for_the_new_one)
     with pytest.raises((DeliveryError, KeyboardInterrupt)):
         deliver(target, overwrite=True)
     assert (target / "panels.step").read_text() == "old"
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def test_where_nothing_is_exchanged_two_renames_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(folder_module, "exchanged", lambda *_: False)
+    deliver(tmp_path / "out", "old")
+    deliver(tmp_path / "out", overwrite=True)
+    assert (tmp_path / "out" / "panels.step").read_text() == "new"
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+@pytest.mark.parametrize("name", ["panels.step", "Thumbs.db", "flat/note.dxf"])
+def test_a_folder_under_the_name_of_a_file_is_nobodys_to_delete(tmp_path: Path, name: str) -> None:
+    deliver(tmp_path / "out", "old")
+    if (tmp_path / "out" / name).is_file():
+        (tmp_path / "out" / name).unlink()
+    (tmp_path / "out" / name).mkdir(parents=True)
+    (tmp_path / "out" / name / "work.txt").write_text("a day's work")
+    with pytest.raises(DeliveryError, match=f"also holds '{name}'"):
+        deliver(tmp_path / "out", overwrite=True)
+    assert (tmp_path / "out" / name / "work.txt").is_file()
+
+
+def test_a_file_that_somebody_changed_is_not_deleted(tmp_path: Path) -> None:
+    deliver(tmp_path / "out", "old")
+    (tmp_path / "out" / "panels.step").write_text("with my notes")
+    with pytest.raises(DeliveryError, match=r"'panels\.step' in .* was changed since cadpanel wrote it"):
+        deliver(tmp_path / "out", overwrite=True)
+    (tmp_path / "out" / "panels.step").unlink()
+    deliver(tmp_path / "out", overwrite=True)
+    assert (tmp_path / "out" / "panels.step").read_text() == "new"
+
+
+REPLACE = """
+import sys, pathlib
+from cadpanel.delivery.folder import delivery_folder
+sys.stdout.write("ready"); sys.stdout.flush()
+for count in range(100_000):
+    with delivery_folder(pathlib.Path(sys.argv[1]), overwrite=True) as folder:
+        (folder / "report.json").write_text('{"schema": "cadpanel.report/1"}')
+        (folder / "panels.step").write_text(f"{count}")
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="elsewhere two renames have to do")
+def test_whoever_is_killed_leaves_a_whole_delivery_and_the_next_run_clears_the_rest(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+    deliver(target, "first")
+    for number in range(cases(4, 60)):
+        process = subprocess.Popen([sys.executable, "-c", REPLACE, str(target)], stdout=subprocess.PIPE)
+        assert process.stdout is not None
+        process.stdout.read(5)
+        end = time.monotonic() + 0.05 + 0.005 * number
+        while time.monotonic() < end:
+            assert target.is_dir()  # whoever looks sees one
+        process.kill()
+        process.communicate()
+        assert changed_files(target) == ()
+    deliver(target, "last", overwrite=True)
     assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ReportModel, read_report, write_report
 from cadpanel.delivery.verify import verify

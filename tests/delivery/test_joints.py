@@ -17,8 +17,8 @@ from cadpanel.brep.building.sheet import build_panel, volume_of
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.step_files import PANELS
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ClearModel, ReportModel, read_report, write_report
 from cadpanel.delivery.settings import SheetSettings

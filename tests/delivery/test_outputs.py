@@ -12,9 +12,10 @@ from cadpanel.brep.proof.inspection import inspect
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery import deliver as delivering
 from cadpanel.delivery import verify as verifying
-from cadpanel.delivery.folder import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT, STUDY, STUDY_PLOTS, STUDY_TABLE
+from cadpanel.delivery.manifest import MANIFEST
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
+from cadpanel.delivery.own_files import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT, STUDY, STUDY_PLOTS, STUDY_TABLE
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError, SettingsError
@@ -37,7 +38,7 @@ def test_outputs_have_names_and_files_of_their_own() -> None:
     files = [file for output in OUTPUTS for file in (*output.files, *output.folders)]
     assert len({output.name for output in OUTPUTS}) == len(OUTPUTS)
     assert len(set(files)) == len(files)
-    others = {REPORT, COMPARISON, STUDY, STUDY_TABLE, *STUDY_PLOTS}
+    others = {REPORT, COMPARISON, MANIFEST, STUDY, STUDY_TABLE, *STUDY_PLOTS}
     assert not others & set(files)
     assert others | set(files) == OWN_FILES | OWN_FOLDERS.keys()
 
@@ -53,7 +54,7 @@ def test_a_delivery_holds_the_report_what_is_always_there_and_what_was_asked_for
         if output.always or (output.unasked if asked is None else output.name in asked)
         for file in (*output.files, *output.folders)
     ]
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {REPORT, *wanted}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {REPORT, MANIFEST, *wanted}
     assert verifying.verify(tmp_path / "out").holds
 
 

@@ -11,7 +11,7 @@ import pytest
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.proof.inspection import inspect
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import write_report
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.settings import SheetSettings

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS, write_solids
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels

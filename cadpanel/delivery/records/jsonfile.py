@@ -79,7 +79,7 @@ def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) ->
     except UnicodeDecodeError as error:
         raise DeliveryError(f"'{path}' is not {what}: it is not UTF-8 text (byte {error.start}).") from error
     try:
-        content = json.loads(text, parse_constant=_refuse_constant)
+        content = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_without_doubles)
         _check_schema(content, schema)
         return model.model_validate_json(text, strict=True)
     except ValidationError as error:
@@ -109,6 +109,16 @@ def write_json(record: Record, path: Path) -> None:
 
 def _refuse_constant(name: str) -> NoReturn:
     raise ValueError(f"it holds {name}, and only finite numbers are allowed")
+
+
+def _without_doubles(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """Refuse a key that stands twice: readers differ in which of the two they take."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        names = [name for name, _ in pairs]
+        double = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f'the key "{double}" stands in it twice')
+    return found
 
 
 def _check_schema(content: object, schema: str) -> None:

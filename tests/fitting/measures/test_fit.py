@@ -8,7 +8,7 @@ import pytest
 from pydantic import TypeAdapter
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.from_shape import patch_models
 from cadpanel.delivery.records.patches import PatchModel
 from cadpanel.delivery.records.report import read_report

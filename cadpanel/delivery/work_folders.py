@@ -1,0 +1,71 @@
+"""Hidden folders beside a delivery: what is being written, and what was left there by a run that was killed.
+
+Their names say who writes: ".cadpanel-HOST-PID-TOKEN.part". A folder whose writer runs no more on this machine is
+stale: the next run clears it, or puts it back where it is an old delivery that stood aside when its writer was killed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import secrets
+import shutil
+import socket
+import time
+from contextlib import suppress
+from pathlib import Path
+
+_NAME = re.compile(r"\.cadpanel-(?P<host>[0-9a-f]{8})-(?P<pid>\d+)-[0-9a-f]{8}(?P<what>\.part|\.old-.+)")
+_STALE_SECONDS = 86_400.0
+"""After which a folder counts as left behind where nobody can be asked whether its writer runs."""
+
+
+def work_folder(place: Path) -> Path:
+    """A new name beside a place."""
+    return place.with_name(f".cadpanel-{_host()}-{os.getpid()}-{secrets.token_hex(4)}.part")
+
+
+def aside_of(work: Path, place: Path) -> Path:
+    """Where what stands in a place goes until the work has taken it, so that it can be put back."""
+    return work.with_name(f"{work.stem}.old-{place.name}")
+
+
+def clear_left_behind(parent: Path) -> None:
+    """Remove what killed runs have left in a folder; a delivery that stood aside returns to where nothing is now."""
+    try:
+        entries = list(parent.iterdir())
+    except OSError:
+        return  # whoever writes there says why not
+    for entry in entries:
+        found = _NAME.fullmatch(entry.name)
+        if found is None or not entry.is_dir() or _is_at_work(entry, found["host"], int(found["pid"])):
+            continue
+        place = parent / found["what"].removeprefix(".old-")
+        if found["what"] != ".part" and not os.path.lexists(place):
+            with suppress(OSError):
+                entry.rename(place)
+                continue
+        shutil.rmtree(entry, ignore_errors=True)
+
+
+def _is_at_work(folder: Path, host: str, pid: int) -> bool:
+    """Whether the process that made a folder may still be at it."""
+    if host != _host() or os.name == "nt":  # Windows would end a process that is asked
+        with suppress(OSError):
+            return time.time() - folder.stat().st_mtime < _STALE_SECONDS
+        return False
+    if pid == os.getpid():
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True  # someone else's
+    return True
+
+
+def _host() -> str:
+    """This machine in eight digits: a disk may be shared with others."""
+    return hashlib.sha256(socket.gethostname().encode()).hexdigest()[:8]

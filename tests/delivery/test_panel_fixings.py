@@ -10,7 +10,7 @@ import pytest
 from ezdxf.filemanagement import readfile
 
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, write_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings

@@ -10,8 +10,8 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.step_files import PANELS
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import read_report, write_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels

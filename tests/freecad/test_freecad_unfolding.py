@@ -12,8 +12,8 @@ import pytest
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.deliver import deliver
-from cadpanel.delivery.folder import REPORT
 from cadpanel.delivery.outputs.step_files import SKINS
+from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.settings import SheetSettings

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.records.comparison import ComparisonModel
     from cadpanel.delivery.records.report import ReportModel
-    from cadpanel.delivery.settings import Schema
+    from cadpanel.delivery.settings import Ends, Schema
     from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
     from cadpanel.delivery.shop_settings import ShopKeywords
@@ -190,6 +190,7 @@ def deliver(
     *,
     thickness: float = 3.0,
     joint: float = 0.0,
+    ends: Ends = "bevel",
     skin_side: SkinSide = "outer",
     schema: Schema = "AP242",
     overwrite: bool = False,
@@ -203,6 +204,7 @@ def deliver(
         out: the folder; an existing one is refused unless `overwrite` is set.
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm.
+        ends: "bevel": walls stand in the planes of joints; "square": square to the sheet, as lasers cut them.
         skin_side: "outer": the skin is the sheet's outer face; "inner": its inner one.
         schema: of the STEP files, "AP242" or "AP214".
         overwrite: replace an existing delivery.
@@ -222,7 +224,7 @@ def deliver(
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.shop_settings import ShopSettings
 
-    sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
+    sheet = SheetSettings(thickness=thickness, joint=joint, ends=ends, skin_side=skin_side, schema=schema)
     check_keywords("deliver", shop)
     asked = ShopSettings(**cast("dict[str, Any]", shop))
     return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)

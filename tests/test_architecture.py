@@ -183,6 +183,7 @@ BESIDE = {"freecad", "browser", "benchmarks", "mutation"}
 WITHOUT_LOGIC = {
     "cadpanel.brep.kernel.types": "three other names for the kernel's types",
     "cadpanel.brep.files.format": "what a file format is asked for, abstract",
+    "cadpanel.brep.building.sheet_faces": "the faces of a sheet by their names",
     "cadpanel.cli.features": "prints the catalogue",
 }
 THROUGH_A_DOOR = {

@@ -155,7 +155,7 @@ def test_settings_are_read_back_from_a_comparison_as_they_were_asked_for(tmp_pat
 
 
 def test_a_fit_is_run_again_from_its_report_with_the_same_numbers(tmp_path: Path) -> None:
-    sheet = SheetSettings(thickness=2.0, skin_side="inner", schema="AP214")
+    sheet = SheetSettings(thickness=2.0, skin_side="inner", schema="AP214", ends="square")
     shop = ShopSettings(
         outputs="flats", only="N 2", k_factor=0.4, stock=[(3000.0, 6000.0)], dxf_layers=[("CUT", "0")], density=7850.0
     )

@@ -38,6 +38,7 @@ class Regular:
     anchor: int = 0
     curved: tuple[bool, ...] = (False,)
     four_sided: bool = False
+    square: bool = True
     patches: tuple[Patch, ...] = (Plane(),)
 
     @property
@@ -108,6 +109,7 @@ class RegularShape:
     outline: Array
     normal: Array
     four_sided: bool = False
+    square: bool = True
     patches: tuple[patches.Patch, ...] = (patches.PlanePatch(),)
 
     def corners(self) -> Array:
@@ -127,6 +129,9 @@ class RegularShape:
 
     def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> RegularShape:
         raise PanelError(self.name, f"cut along {sorted(planes)} to {depth:g} mm it is not regular: use a polygon.")
+
+    def squared(self, _depth: float) -> RegularShape:
+        return self
 
     def area(self) -> float:
         reach = np.linalg.norm(self.outline[0] - self.outline.mean(axis=0))

@@ -15,7 +15,7 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.interrupt import first_interrupt_ends
 from cadpanel.cli.steps import Steps, steps
-from cadpanel.delivery.chosen_panels import chosen_panels
+from cadpanel.delivery.chosen_panels import chosen_panels, names_along
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.outputs.catalogue import chosen_outputs
 from cadpanel.delivery.records.report import ReportModel
@@ -148,7 +148,7 @@ def _find(
     _begin_to_read(file, how, shown)
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
-    from cadpanel.studies.fewest_panels import fewest_panels
+    from cadpanel.studies.fewest_panels import MOST, fewest_panels
 
     seconds_to_read = 0.0
 
@@ -156,6 +156,8 @@ def _find(
         nonlocal seconds_to_read
         began = time.perf_counter()
         reference = read_reference(file, replace(how, divide=count))
+        if seconds_to_read == 0.0:  # what fits no panel of any number is refused before the first fit
+            chosen_panels(names_along((panel.name for panel in reference.panels), MOST), asked.shop.only)
         seconds_to_read += time.perf_counter() - began
         return reference
 

@@ -252,6 +252,9 @@ def print_certificate(certificate: CertificateModel, heading: str) -> None:
         f"seams open by at most {length(certificate.max_seam_gap)} mm in the files{_joints(certificate)}."
     )
     console().print(Text(f"{heading}: {said}"))
+    if certificate.holes:
+        holes = counted(certificate.holes, "fixing hole")
+        console().print(Text(f"{holes}, within {certificate.hole_error:.1g} mm of the flat patterns' circles."))
     drawn = certificate.outputs.get("flats")
     if drawn is not None:
         said = (

@@ -94,7 +94,7 @@ def fill_delivery(
         baselines = baselines_record(result)
         tell("compare", 1, 1)
         compared_at = time.perf_counter()
-        built = build_panels(result.shapes, sheet, result.reference.seams, tell, result.own_joints())
+        built = build_panels(result.shapes, sheet, result.reference.seams, tell, result.own_joints(), shop)
         parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
         panels = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
         seams = seam_records(result.reference, result.measures, built.joints, result.seam_prices)

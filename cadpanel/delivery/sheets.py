@@ -9,7 +9,10 @@ from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and
 from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.brep.step.properties import Validation
+from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
+from cadpanel.delivery.panel_returns import Returned, returned
 from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import PanelError
 from cadpanel.geometry.edge_planes import SeamEdges
 from cadpanel.geometry.joint_widths import widest_joint
@@ -38,6 +41,8 @@ class PanelSheet:
         check, skin_check: by which a receiver sees that the solid and the skin arrived whole.
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
+        fixings: its holes; None where none are asked for. The skin has none.
+        returns: its sides that are folded; their cylinders and planes are patches of `shape`, not of `fitted`.
         moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
         notes: what the fabricator should know, one sentence each.
     """
@@ -51,6 +56,8 @@ class PanelSheet:
     skin_check: Validation
     area: float
     volume: float
+    fixings: PanelFixings | None
+    returns: tuple[str, ...]
     moved: float
     notes: tuple[str, ...]
 
@@ -74,6 +81,7 @@ def build_panels(
     seams: Sequence[Seam] = (),
     progress: Progress | None = None,
     own_joints: Mapping[int, float] | None = None,
+    shop: ShopSettings | None = None,
 ) -> Built:
     """Build the sheet and the skin of every panel, cut back from the seams.
 
@@ -83,6 +91,7 @@ def build_panels(
         seams: which of their edges meet.
         progress: told of every panel.
         own_joints: clear widths of single seams, by their places, mm.
+        shop: what is done to sheets: holes and returns.
 
     Raises:
         PanelError: a panel cannot be built; the message names it, the reason and the remedy.
@@ -91,12 +100,14 @@ def build_panels(
     tell("build", 0, len(shapes))
     straight = [shape.straightened() for shape in shapes]
     fitted = [one.shape for one in straight]
-    edges = seam_edges(shapes, seams, own_joints or {})
+    edges, square = seam_edges(shapes, seams, own_joints or {}), sheet.ends == "square"
     try:
-        jointed = cut_to_seams(fitted, edges, sheet.joint, sheet_depth(sheet.thickness, sheet.skin_side))
-        panels = _build_all(straight, jointed, sheet, tell)
+        depth = sheet_depth(sheet.thickness, sheet.skin_side)
+        jointed = cut_to_seams(fitted, edges, sheet.joint, depth)
+        meeting = _meeting_edges(len(shapes), edges)
+        panels = _build_all(straight, jointed, meeting, (sheet, shop or ShopSettings()), tell)
     except PanelError:
-        narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side)
+        narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side, square=square)
         if narrow is None:
             raise
         raise PanelError(narrow.panel, narrow.reason) from None
@@ -123,19 +134,35 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
+def _meeting_edges(count: int, seams: Sequence[SeamEdges]) -> list[set[str]]:
+    """Of each panel the edges at which it meets another one."""
+    found: list[set[str]] = [set() for _ in range(count)]
+    for seam in seams:
+        for panel, edge in zip(seam.panels, seam.edges, strict=True):
+            found[panel].add(edge)
+    return found
+
+
 def _build_all(
-    straight: Sequence[Straightened[Panel]], jointed: Jointed, sheet: SheetSettings, tell: Progress
+    straight: Sequence[Straightened[Panel]],
+    jointed: Jointed,
+    meeting: Sequence[set[str]],
+    asked: tuple[SheetSettings, ShopSettings],
+    tell: Progress,
 ) -> tuple[PanelSheet, ...]:
     built: list[PanelSheet] = []
-    for one, shape in zip(straight, jointed.shapes, strict=True):
-        built.append(_build(one, shape, sheet))
+    for one, shape, edges in zip(straight, jointed.shapes, meeting, strict=True):
+        built.append(_build(one, returned(shape, edges, *asked), *asked))
         tell("build", len(built), len(straight))
     return tuple(built)
 
 
-def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) -> PanelSheet:
-    built = build_panel(shape, sheet.thickness, sheet.skin_side)
-    volume = sheet_volume(shape, sheet.thickness, sheet.skin_side)
+def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, shop: ShopSettings) -> PanelSheet:
+    depth = sheet_depth(sheet.thickness, sheet.skin_side)
+    shape = cut.shape.squared(depth) if sheet.ends == "square" else cut.shape
+    fixings = panel_fixings(shape, sheet, shop)
+    built = build_panel(shape, sheet.thickness, sheet.skin_side, () if fixings is None else fixings.holes)
+    volume = sheet_volume(shape, sheet.thickness, sheet.skin_side) - (fixings.volume if fixings is not None else 0.0)
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
@@ -151,8 +178,10 @@ def _build(straight: Straightened[Panel], shape: Panel, sheet: SheetSettings) ->
         skin_check=_validation(built.skin, None),
         area=shape.area(),
         volume=volume,
+        fixings=fixings,
+        returns=cut.sides,
         moved=straight.largest_move,
-        notes=notes,
+        notes=(*notes, *cut.notes),
     )
 
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
+from cadpanel.geometry.limits import LEAST_DISTANCE, LEAST_PITCH
 from cadpanel.reference.texts import choices_of
-from cadpanel.setting import Option, Range, check_ranges, setting
+from cadpanel.setting import Option, Range, check_ranges, require, setting
 
 Origin = Literal["local", "keep"]
 DxfEntities = Literal["polyline", "lines"]
@@ -18,6 +19,8 @@ MeshColours = Literal["feature", "deviation"]
 LAYERS = ("CUT", "BEND", "ROLL", "MARK", "INFO")
 """What a flat pattern is drawn of: contour, tangent and centre lines of bends, rulings, marks, and what is no mark."""
 _SHEET = re.compile(r"\s*(\d+(?:\.\d+)?)\s*[xX]\s*(\d+(?:\.\d+)?)\s*")
+_RETURNS = re.compile(r"\s*(\d+(?:\.\d+)?)\s*@\s*(\d+(?:\.\d+)?)\s*")
+_FIXINGS = re.compile(r"\s*(\d+(?:\.\d+)?)\s*@\s*(\d+(?:\.\d+)?)\s*,\s*(\d+(?:\.\d+)?)\s*")
 _NO_LAYER = re.compile(r'[<>/\\":;?*|=`,\x00-\x1f]')
 _LONGEST_LAYER = 255
 _LONGEST_WORDS = 200
@@ -45,6 +48,9 @@ class ShopSettings:
         mesh_colours: what colours of meshes tell: "feature" or "deviation".
         material: what the sheet is made of, as files and drawings name it; empty to name nothing.
         author, organization: who files are from; empty to name nobody.
+        fixings: fixing holes along edges: their diameter, largest pitch, and distance from the edge, mm; None for none.
+        returns: legs folded inwards along flat sides that meet nobody: their length on the outer face, and the inner
+            radius of the fold, mm; None for none.
     """
 
     outputs: str | Sequence[str] | None = setting(
@@ -138,6 +144,26 @@ class ShopSettings:
     author: str = setting("", option=Option(metavar="NAME", help="Who the STEP files say they are from.", told=False))
     organization: str = setting("", option=Option(metavar="NAME", help="And from which house.", told=False))
 
+    fixings: Sequence[float] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: fixings_of(text),
+            metavar="D@PITCH,EDGE",
+            help="Fixing holes: diameter, largest pitch, and distance of their middles from the edge, mm.",
+        ),
+    )
+
+    returns: Sequence[float] | None = setting(
+        None,
+        option=Option(
+            takes=str,
+            read=lambda _, text: returns_of(text),
+            metavar="MM@RADIUS",
+            help="Fold flat sides that meet nobody inwards: length on the outer face, and inner radius.",
+        ),
+    )
+
     def __post_init__(self) -> None:
         """Check every setting, and bring those of several parts into one form.
 
@@ -159,6 +185,8 @@ class ShopSettings:
         object.__setattr__(self, "dxf_layers", _checked_layers(self.dxf_layers))
         for what in ("material", "author", "organization"):
             _check_words(what, getattr(self, what))
+        object.__setattr__(self, "fixings", None if self.fixings is None else _checked_fixings(self.fixings))
+        object.__setattr__(self, "returns", None if self.returns is None else _checked_returns(self.returns))
         object.__setattr__(self, "stock", tuple(_checked_sheet(sheet) for sheet in self.stock))
 
     def layer(self, role: str) -> str:
@@ -176,6 +204,32 @@ def stock_of(text: str) -> tuple[tuple[float, float], ...]:
     if not all(found):
         raise SettingsError(f"sheets of the stock are written like 1500x3000,2000x4000, not {text!r}")
     return tuple((float(sheet[1]), float(sheet[2])) for sheet in found if sheet is not None)
+
+
+def fixings_of(text: str) -> tuple[float, ...]:
+    """Diameter, pitch and distance from the edge from "6.5@400,20".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = _FIXINGS.fullmatch(text)
+    if found is None:
+        raise SettingsError(
+            f"fixing holes are written like 6.5@400,20 (diameter, pitch, distance from edges), not {text!r}"
+        )
+    return tuple(map(float, found.groups()))
+
+
+def returns_of(text: str) -> tuple[float, ...]:
+    """Length and inner radius from "30@3".
+
+    Raises:
+        SettingsError: the text is not of that form.
+    """
+    found = _RETURNS.fullmatch(text)
+    if found is None:
+        raise SettingsError(f"returns are written like 30@3, length and inner radius, not {text!r}")
+    return tuple(map(float, found.groups()))
 
 
 def layers_of(text: str) -> tuple[tuple[str, str], ...]:
@@ -228,6 +282,31 @@ def _checked_sheet(given: object) -> tuple[float, float]:
     return float(sides[0]), float(sides[1])
 
 
+def _checked_fixings(given: object) -> tuple[float, float, float]:
+    numbers = tuple(given) if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    good = [isinstance(number, int | float) and 0.0 < number < math.inf for number in numbers]
+    if len(numbers) != 3 or not all(good):
+        raise SettingsError(
+            f"fixing holes have a diameter, a pitch and a distance from edges in mm, like (6.5, 400, 20), not {given!r}"
+        )
+    diameter, pitch, distance = map(float, numbers)
+    require("diameter of fixing holes", diameter, least=0.5, most=1000.0, unit=" mm")
+    require("pitch of fixing holes", pitch, least=LEAST_PITCH * diameter, unit=" mm")
+    require("distance of fixing holes from the edge", distance, least=LEAST_DISTANCE * diameter, unit=" mm")
+    return diameter, pitch, distance
+
+
+def _checked_returns(given: object) -> tuple[float, float]:
+    numbers = tuple(given) if isinstance(given, Sequence) and not isinstance(given, str) else ()
+    good = [isinstance(number, int | float) and math.isfinite(number) for number in numbers]
+    if len(numbers) != 2 or not all(good):
+        raise SettingsError(f"returns have a length and an inner radius in mm, like (30, 3), not {given!r}")
+    length, radius = map(float, numbers)
+    require("length of returns", length, least=1.0, most=1000.0, unit=" mm")
+    require("inner radius of returns", radius, least=0.1, most=1000.0, unit=" mm")
+    return length, radius
+
+
 class ShopKeywords(TypedDict, total=False):
     """The fields of `ShopSettings` as keywords, which type checkers want written out; a test holds the two alike."""
 
@@ -249,3 +328,5 @@ class ShopKeywords(TypedDict, total=False):
     material: str
     author: str
     organization: str
+    fixings: Sequence[float] | None
+    returns: Sequence[float] | None

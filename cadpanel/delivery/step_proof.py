@@ -13,13 +13,15 @@ from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.part_data import skin_data, solid_data
+from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
-from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -57,14 +59,18 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
             fitted=_fitted(panel),
-            flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
+            flat=_expected_flat(part, depth),
             said=said,
             said_of_skin=said_of_skin,
             placed=contents.placed,
+            square=contents.sheet.ends == "square",
+            holes=_expected_holes(part, depth),
+            folded=_folded(panel),
             sheet=Sheet(
-                shape=recorded_shape(panel, depth),
+                shape=recorded_shape(panel, depth, square=contents.sheet.ends == "square"),
                 thickness=contents.sheet.thickness,
                 skin_side=contents.sheet.skin_side,
+                holes=() if part.fixings is None else part.fixings.holes,
             ),
         )
         for panel, part, said, said_of_skin in zip(
@@ -76,6 +82,33 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint)
     found = dict(zip(there, certificate.clear, strict=True)) if certificate.clear else {}
     return Proved(certificate=_record(certificate), seams=_with_joints(contents.seams, found))
+
+
+def _expected_flat(part: FlatPart, depth: float) -> ExpectedFlat:
+    holes = 0.0 if part.fixings is None else part.fixings.area
+    return ExpectedFlat(area=part.size.area - holes, share=part.share, depth=depth, skin_pieces=part.skin_pieces)
+
+
+def _expected_holes(part: FlatPart, depth: float) -> ExpectedHoles | None:
+    if part.fixings is None:
+        return None
+    fixings = part.fixings
+    return ExpectedHoles(
+        pattern=fixings.pattern,
+        places=fixings.places,
+        patches=tuple(hole.patch for hole in fixings.found.holes),
+        middles=fixings.middles,
+        diameter=fixings.rule.diameter,
+        distance=fixings.rule.distance,
+        depth=depth,
+        skin_area=fixings.skin_area,
+    )
+
+
+def _folded(panel: PanelModel) -> tuple[int, int]:
+    """How many patches lie beyond the fit's at side 0 and at side 1."""
+    first, last = unfolded_rulings(panel)
+    return first, len(panel.corners[0]) - last
 
 
 def _expected_seam(seam: SeamModel, moved: dict[str, float]) -> ExpectedSeam:
@@ -130,6 +163,8 @@ def _record(certificate: Certificate) -> CertificateModel:
         flat_area_error=certificate.flat_area_error,
         flat_length_error=certificate.flat_length_error,
         stated_error=certificate.stated_error,
+        holes=certificate.holes,
+        hole_error=certificate.hole_error,
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         clear=_clear([one for one in certificate.clear if one is not None]),

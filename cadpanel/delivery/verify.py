@@ -20,6 +20,7 @@ from cadpanel.delivery.records.measured_again import measured_faults, reading_ag
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.sheet_checks import sheet_depth
@@ -100,7 +101,8 @@ def _contents(report: ReportModel) -> Contents:
     sheet, shop = report.settings.sheet(), report.settings.shop()
     chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    parts = flat_parts([recorded_shape(panel, depth) for panel in report.panels], sheet, shop)
+    square = sheet.ends == "square"
+    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
     own = [place for place, panel in enumerate(report.panels) if panel.name in chosen]
     return Contents(
         title=Path(report.reference.file).stem,
@@ -132,6 +134,7 @@ def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: H
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),
+        *return_faults(contents),
     )
     certificate = proved.certificate.model_copy(update={"failures": failures})
     return replace(proved, certificate=_with_outputs(certificate, found))

@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.cone_sections import axis_frame
+from cadpanel.geometry.end_leans import leans
 from cadpanel.geometry.panel import Panel
-from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import edge_corners
 from cadpanel.geometry.vectors import cross, unit
 
@@ -23,6 +22,8 @@ def edge_bevels(shape: Panel, other: Panel) -> dict[str, tuple[float, float]]:
     """
     ends = {f"end {end}": tuple(bevels) for end, bevels in enumerate(end_bevels(shape).tolist())}
     straight = ["side 0", "side 1"] if shape.four_sided else [f"edge {i}" for i in range(shape.corners().shape[1])]
+    if shape.square:
+        return dict.fromkeys([*ends, *straight], (0.0, 0.0))
     return {**ends, **{edge: 2 * (_straight_bevel(shape, other, edge),) for edge in straight}}
 
 
@@ -44,23 +45,6 @@ def end_bevels(shape: Panel) -> Array:
     """
     _, normals = shape.cuts()
     turned_away = [normal * way for normal, way in zip(normals, (-1.0, 1.0), strict=False)]
-    leans = [_leans(shape, normal) for normal in turned_away]
-    extremes = np.array([[min(lean), max(lean)] for lean in leans]).reshape(-1, 2)
+    found = [leans(shape.rulings(), shape.patches, normal) for normal in turned_away]
+    extremes = np.array([[min(lean), max(lean)] for lean in found]).reshape(-1, 2)
     return np.asarray(np.arcsin(np.clip(extremes, -1.0, 1.0)))
-
-
-def _leans(shape: Panel, cut_normal: Array) -> list[float]:
-    """N . m at the rulings, and inside of curved patches where it is greatest or least."""
-    points, directions, normals = shape.rulings()
-    found = (normals @ cut_normal).tolist()
-    for index, patch in enumerate(shape.patches):
-        if not isinstance(patch, ConePatch):
-            continue
-        frame = axis_frame(points[index], directions[index], normals[index], patch)
-        cosine, sine = math.cos(patch.half_angle), math.sin(patch.half_angle)
-        toward, aside = float(frame.radial @ cut_normal), float(frame.tangential @ cut_normal)
-        phase, first, last = math.atan2(aside, toward), *sorted((0.0, patch.sweep))
-        for half_turn in range(math.ceil((first - phase) / math.pi), math.floor((last - phase) / math.pi) + 1):
-            swing = math.hypot(toward, aside) * (-1.0) ** half_turn
-            found.append(cosine * swing - sine * float(frame.axis @ cut_normal))
-    return list(found)

@@ -12,7 +12,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
-from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_cone, radius_range
+from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_cone, lifted, radius_range
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
@@ -161,8 +161,15 @@ def _radii(shape: Chain, index: int, patch: ConePatch) -> list[float]:
     """Smallest distance from the axis at either end, with the sign that the patch should have: negative beyond 0."""
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     sign = math.copysign(1.0, patch.radius)
-    cuts = [cut_cone(frame, *plane) for plane in zip(shape.cut_points, shape.cut_normals, strict=True)]
-    return [min(sign * radius for radius in radius_range(cut, patch.sweep)) for cut in cuts]
+    cut_frame = lifted(frame, shape.lift)
+    cuts = [cut_cone(cut_frame, *plane) for plane in zip(shape.cut_points, shape.cut_normals, strict=True)]
+    return [min(sign * radius for radius in _own_radii(frame, cut_frame, cut)) for cut in cuts]
+
+
+def _own_radii(frame: AxisFrame, cut_frame: AxisFrame, cut: ConeCut) -> list[float]:
+    """Smallest and largest radius of a patch along an end, where the plane may cut a parallel one."""
+    inside = cut_frame.level_radius - frame.level_radius
+    return [radius - inside for radius in radius_range(cut, frame.sweep)]
 
 
 def _check_face(shape: Chain, where: str) -> None:
@@ -215,7 +222,8 @@ def _check_rulings(shape: Chain, where: str) -> None:
 
 
 def _check_cone(shape: Chain, index: int, patch: ConePatch, where: str) -> None:
-    frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    own = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    frame = lifted(own, shape.lift)
     cuts = []
     for end in range(2):
         # A cut that leans back over the axis cannot be an ellipse; cut_cone would have nothing to divide by.
@@ -225,7 +233,7 @@ def _check_cone(shape: Chain, index: int, patch: ConePatch, where: str) -> None:
         if abs(cuts[end].eccentricity) > LARGEST_ECCENTRICITY:
             raise PanelError(shape.name, _no_ellipse(index, end, abs(cuts[end].eccentricity), where))
         sign = math.copysign(1.0, patch.radius)
-        smallest = min(sign * radius for radius in radius_range(cuts[end], patch.sweep))
+        smallest = min(sign * radius for radius in _own_radii(own, frame, cuts[end]))
         if smallest < SMALLEST_RADIUS:
             raise PanelError(
                 shape.name,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -51,6 +51,11 @@ class AxisFrame:
         turned = np.outer(np.cos(sweep_angles), self.radial) + np.outer(np.sin(sweep_angles), self.tangential)
         return np.asarray(turned)
 
+    def normals(self, sweep_angles: Array) -> Array:
+        """(m, 3) unit normals of the skin along the generatrices at (m,) sweep angles."""
+        turned: Array = math.cos(self.half_angle) * self.radials(sweep_angles) - math.sin(self.half_angle) * self.axis
+        return turned
+
     def points(self, sweep_angles: Array, heights: Array) -> Array:
         """(m, 3) points of the surface at (m,) sweep angles and (m,) heights along the generatrix, mm."""
         along = np.outer(heights * math.cos(self.half_angle), self.axis)
@@ -72,6 +77,14 @@ def axis_frame(point: Array, direction: Array, normal: Array, patch: ConePatch) 
         level_radius=level_radius,
         half_angle=patch.half_angle,
         sweep=patch.sweep,
+    )
+
+
+def lifted(frame: AxisFrame, lift: float) -> AxisFrame:
+    """The parallel patch at `lift` mm along the normals; its points lie at the same angles and heights."""
+    shift = lift * math.sin(frame.half_angle) * frame.axis
+    return replace(
+        frame, center=frame.center - shift, level_radius=frame.level_radius + lift * math.cos(frame.half_angle)
     )
 
 

@@ -25,7 +25,13 @@ class TooWide:
 
 
 def widest_joint(
-    shapes: Sequence[Panel], seams: Sequence[SeamEdges], joint: float, thickness: float, skin_side: SkinSide
+    shapes: Sequence[Panel],
+    seams: Sequence[SeamEdges],
+    joint: float,
+    thickness: float,
+    skin_side: SkinSide,
+    *,
+    square: bool = False,
 ) -> TooWide | None:
     """Which panel is too small for a joint of that width, and what width all of them have room for.
 
@@ -35,7 +41,7 @@ def widest_joint(
 
     def failing(width: float) -> list[int]:
         walls = walls_of(len(shapes), seams, planes, width)
-        return [i for i in sought if _refused(shapes[i], walls[i], thickness, skin_side)]
+        return [i for i in sought if _refused(shapes[i], walls[i], thickness, skin_side, square=square)]
 
     sought = list(range(len(shapes)))
     sought = failing(joint)
@@ -56,10 +62,11 @@ def widest_joint(
     )
 
 
-def _refused(shape: Panel, walls: dict[str, CutPlane], thickness: float, skin_side: SkinSide) -> bool:
+def _refused(shape: Panel, walls: dict[str, CutPlane], thickness: float, skin_side: SkinSide, *, square: bool) -> bool:
+    depth = sheet_depth(thickness, skin_side)
     try:
-        cut = shape.cut_back(walls, sheet_depth(thickness, skin_side)) if walls else shape
-        check_buildable(cut, thickness, skin_side)
+        cut = shape.cut_back(walls, depth) if walls else shape
+        check_buildable(cut.squared(depth) if square else cut, thickness, skin_side)
     except PanelError:
         return True
     return False

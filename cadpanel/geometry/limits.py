@@ -8,3 +8,5 @@ LARGEST_COORDINATE = 1e7
 """Farthest corner from the origin; beyond it the CAD kernel's own checks at 1e-7 mm lose their digits."""
 WIDEST_JOINT = 1000.0
 """Widest joint between two sheets; no facade has one of a metre."""
+LEAST_DISTANCE, LEAST_PITCH = 1.2, 2.2
+"""Of holes for bolts from an edge and from each other, middle to middle, in diameters: EN 1993-1-8, table 3.3."""

@@ -64,6 +64,8 @@ class Panel(Protocol):
         feature: name of the shape feature.
         patches: of its skin, in the order of the walk.
         four_sided: whether it has two ends and two sides, along both of which `corners` gives a row.
+        square: whether the walls of its sheet stand square to it, as a laser cuts them; else its ends stand in their
+            cut planes, and other walls lean as they do.
     """
 
     @property
@@ -77,6 +79,9 @@ class Panel(Protocol):
 
     @property
     def four_sided(self) -> bool: ...  # noqa: D102
+
+    @property
+    def square(self) -> bool: ...  # noqa: D102
 
     def corners(self) -> Array:
         """(2, k + 1, 3) the corners along both ends, or (1, n, 3) all round, mm."""
@@ -118,6 +123,17 @@ class Panel(Protocol):
 
         Args:
             planes: by edge.
+            depth: the sheet's other face is `offset(depth)`, mm.
+
+        Raises:
+            PanelError: nothing is left of it.
+        """
+        ...
+
+    def squared(self, depth: float) -> Self:
+        """The panel with walls square to the sheet, inside of those that it has: the shorter face of each edge rules.
+
+        Args:
             depth: the sheet's other face is `offset(depth)`, mm.
 
         Raises:
@@ -189,6 +205,9 @@ class Chain(Protocol):
     @property
     def side_leans(self) -> Array: ...  # noqa: D102
 
+    @property
+    def lift(self) -> float: ...  # noqa: D102
+
     def corners(self) -> Array: ...  # noqa: D102
 
     def binormals(self) -> Array: ...  # noqa: D102
@@ -196,6 +215,8 @@ class Chain(Protocol):
     def rewalked(self, points: Array, directions: Array, normals: Array, patches: tuple[Patch, ...]) -> Self: ...  # noqa: D102
 
     def trimmed(self, cut_points: Array, cut_normals: Array, side_leans: Array) -> Self: ...  # noqa: D102
+
+    def made_square(self) -> Self: ...  # noqa: D102
 
 
 class Outlined(Protocol):

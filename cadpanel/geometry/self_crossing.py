@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section
+from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section, lifted
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
@@ -21,8 +21,11 @@ def end_polyline(shape: Chain, end: int, arc_points: int = ARC_POINTS) -> Array:
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):
             frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
-            section = elliptic_section(frame, cut_cone(frame, shape.cut_points[end], shape.cut_normals[end]))
-            pieces.append(section.points(np.linspace(section.start, section.stop, arc_points)[1:-1]))
+            cut = lifted(frame, shape.lift)
+            section = elliptic_section(cut, cut_cone(cut, shape.cut_points[end], shape.cut_normals[end]))
+            parameters = np.linspace(section.start, section.stop, arc_points)[1:-1]
+            back = shape.lift * frame.normals(section.sweep_angles(parameters))
+            pieces.append(section.points(parameters) - back)
         pieces.append(corners[index + 1 : index + 2])
     return np.concatenate(pieces)
 

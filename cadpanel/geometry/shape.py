@@ -21,6 +21,7 @@ from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
 from cadpanel.geometry.polygon_cutting import cut_polygon
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
+from cadpanel.geometry.square_walls import square_chain, square_polygon
 from cadpanel.geometry.vectors import cross, unit
 from cadpanel.geometry.volume import patch_areas
 
@@ -44,6 +45,9 @@ class PanelShape:
         cut_normals: (2, 3) unit normals of the cut planes, both with a positive component along t.
         side_leans: (2,) by how much the wall at either side leans along b for one mm along n; 0 where it stands square
             to the sheet, and at the side of a round patch.
+        square: whether the walls of its sheet stand square to it; see `squared`.
+        lift: where the skin that the cut planes cut lies, mm along n: elsewhere than here only on a face of a square
+            sheet that is not the panel's skin. Every corner and every point of an end lies at that skin's own, along n.
     """
 
     name: str
@@ -55,13 +59,15 @@ class PanelShape:
     cut_points: Array
     cut_normals: Array
     side_leans: Array = field(default_factory=lambda: np.zeros(2))
+    square: bool = False
+    lift: float = 0.0
 
     def __repr__(self) -> str:
         return f"<PanelShape '{self.name}': {self.feature}, {len(self.patches)} patches>"
 
     def corners(self) -> Array:
         """(2, k + 1, 3) where each ruling pierces the cut plane of end 0 and of end 1, mm."""
-        to_plane = self.cut_points[:, None, :] - self.points[None, :, :]
+        to_plane = self.cut_points[:, None, :] - (self.points + self.lift * self.normals)[None, :, :]
         height = np.einsum("erx,ex->er", to_plane, self.cut_normals)
         rate = np.einsum("rx,ex->er", self.directions, self.cut_normals)
         corners: Array = self.points + (height / rate)[..., None] * self.directions
@@ -83,7 +89,7 @@ class PanelShape:
         """The parallel skin at `distance` mm along n (negative: inwards), cut by the same two planes.
 
         It has the same rulings' directions and the same half angles; only the normal radii change (exactly). A side
-        whose wall leans goes with it.
+        whose wall leans goes with it. Of a square sheet it ends where the normals do on which this one ends.
         """
         patches = tuple(
             replace(patch, radius=patch.radius + distance) if isinstance(patch, ConePatch) else patch
@@ -91,7 +97,8 @@ class PanelShape:
         )
         ways = self.normals.copy()
         ways[[0, -1]] += self.side_leans[:, None] * self.binormals()[[0, -1]]
-        return replace(self, points=self.points + distance * ways, patches=patches)
+        lift = self.lift - distance if self.square else 0.0
+        return replace(self, points=self.points + distance * ways, patches=patches, lift=lift)
 
     @property
     def four_sided(self) -> bool:
@@ -106,6 +113,10 @@ class PanelShape:
         """The same walk between other cuts and side walls."""
         return replace(self, cut_points=cut_points, cut_normals=cut_normals, side_leans=side_leans)
 
+    def made_square(self) -> PanelShape:
+        """The same skin, with walls square to its sheet."""
+        return replace(self, square=True, side_leans=np.zeros(2))
+
     def edge(self, edge: str) -> PanelEdge:
         """See `Panel.edge`; a side is straight, an end is where all patches are flat."""
         corners = edge_corners(self.corners(), edge)
@@ -118,12 +129,22 @@ class PanelShape:
         return PanelEdge(corners=corners, outward=outward * self.binormals()[-place], normal=self.normals[-place])
 
     def arcs(self) -> CurvePieces:
-        """See `Panel.arcs`: where the cut planes meet the cones."""
+        """See `Panel.arcs`: where the cut planes meet the cones.
+
+        Raises:
+            ValueError: the skin is the other face of a square sheet, and bends in no arcs of ellipses.
+        """
+        if self.lift != 0.0:
+            raise ValueError(f"panel '{self.name}': the other face of a square sheet ends in no arcs of ellipses")
         return chain_arcs(self.rulings(), self.patches, self.cuts())
 
     def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> PanelShape:
         """See `Panel.cut_back`; the side of a round patch keeps behind its plane, and square to the sheet."""
         return cut_chain(self, planes, depth)
+
+    def squared(self, depth: float) -> PanelShape:
+        """See `Panel.squared`; an end stays in a plane, as far back as its walls lean in where they do most."""
+        return square_chain(self, depth)
 
     def area(self) -> float:
         """Area of the trimmed skin, mm2. The shape must be buildable."""
@@ -153,6 +174,7 @@ class PolygonShape:
         normal: (3,) unit normal, OUTWARD.
         posts: (n, 3) by how much each corner moves for one mm along the normal, as the walls lean; None where all
             walls stand square to the sheet.
+        square: whether they were asked to.
     """
 
     name: str
@@ -160,6 +182,7 @@ class PolygonShape:
     outline: Array
     normal: Array
     posts: Array | None = None
+    square: bool = False
 
     def __repr__(self) -> str:
         return f"<PolygonShape '{self.name}': {self.feature}, {len(self.outline)} corners>"
@@ -199,6 +222,10 @@ class PolygonShape:
         """See `Panel.cut_back`."""
         outline, posts = cut_polygon(self, planes, depth)
         return replace(self, outline=outline, posts=posts)
+
+    def squared(self, depth: float) -> PolygonShape:
+        """See `Panel.squared`; its edges keep their directions."""
+        return replace(self, outline=square_polygon(self, self.posts, depth), posts=None, square=True)
 
     @property
     def four_sided(self) -> bool:

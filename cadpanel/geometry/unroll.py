@@ -49,6 +49,7 @@ class FlatPattern:
         feature: name of its shape feature.
         curves: c pieces of the outline, counterclockwise from the corner of side 0 and end 0.
         edges: (c) the edge that each belongs to: "end 0", "side 1", ...; of a polygon "edge 0", "edge 1", ...
+        owners: (c) the patch that each belongs to.
         tangents: (k - 1, 2, 2) the rulings between patches, from end 0 to end 1.
         bends: the curved patches in the order of the walk.
     """
@@ -57,6 +58,7 @@ class FlatPattern:
     feature: str
     curves: FlatCurves
     edges: tuple[str, ...]
+    owners: tuple[int, ...]
     tangents: Array
     bends: tuple[FlatBend, ...] = ()
 
@@ -141,6 +143,7 @@ def unroll_polygons(shapes: Sequence[PolygonShape]) -> list[FlatPattern]:
             feature=shape.feature,
             curves=segments(corners, np.roll(corners, -1, axis=0)),
             edges=tuple(f"edge {edge}" for edge in range(len(corners))),
+            owners=len(corners) * (0,),
             tangents=np.empty((0, 2, 2)),
         )
         for shape, corners in zip(shapes, flat, strict=True)
@@ -171,6 +174,7 @@ def _pattern(shape: PanelShape, corners: Array, ends: Sequence[FlatCurves]) -> F
         feature=shape.feature,
         curves=joined([ends[0], side_1, ends[1], side_0]),
         edges=(*count * ("end 0",), "side 1", *count * ("end 1",), "side 0"),
+        owners=(*range(count), count - 1, *reversed(range(count)), 0),
         tangents=np.swapaxes(corners[:, 1:-1], 0, 1),
         bends=bends,
     )

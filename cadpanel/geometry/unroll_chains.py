@@ -21,6 +21,7 @@ class ChainArrays(NamedTuple):
         p, t, n, b: (m, k + 1, 3) the rulings' points, directions, normals and ways of the walk.
         radius, half_angle, sweep: (m, k) of the patches; 0 for a plane.
         cut_points, cut_normals: (m, 2, 3).
+        lift: (m,) of the skins that these cut.
     """
 
     p: Array
@@ -32,6 +33,7 @@ class ChainArrays(NamedTuple):
     sweep: Array
     cut_points: Array
     cut_normals: Array
+    lift: Array
 
 
 def chain_arrays(shapes: Sequence[Chain]) -> ChainArrays:
@@ -56,6 +58,7 @@ def chain_arrays(shapes: Sequence[Chain]) -> ChainArrays:
         sweep=numbers[..., 2],
         cut_points=np.array([shape.cut_points for shape in shapes]),
         cut_normals=np.array([shape.cut_normals for shape in shapes]),
+        lift=np.array([shape.lift for shape in shapes]),
     )
 
 
@@ -66,7 +69,8 @@ def unroll_chain_arrays(shapes: Sequence[Chain]) -> tuple[Array, tuple[FlatCurve
     """
     of = chain_arrays(shapes)
     origin, along = _flat_rulings(of)
-    heights = dot(of.cut_points[:, :, None] - of.p[:, None], of.cut_normals[:, :, None])
+    cut = of.p + of.lift[:, None, None] * of.n
+    heights = dot(of.cut_points[:, :, None] - cut[:, None], of.cut_normals[:, :, None])
     heights = heights / dot(of.t[:, None], of.cut_normals[:, :, None])
     origin -= (origin[:, 0] + heights[:, 0, 0, None] * along[:, 0])[:, None]
     corners = origin[:, None] + heights[..., None] * along[:, None]
@@ -128,7 +132,9 @@ def _end_pieces(of: ChainArrays, origin: Array, along: Array, corners: Array, en
     radial = cosine[..., None] * n + k[..., None] * t
     axis = cosine[..., None] * t - k[..., None] * n
     rise, toward, aside = dot(m, axis), dot(m, radial), dot(m, b)
-    reach = np.stack([dot(m, q - p) + level * toward, -level * toward, -level * aside], axis=-1)
+    cut = p + of.lift[:, None, None] * n
+    cut_level = level + of.lift[:, None] * cosine
+    reach = np.stack([dot(m, q - cut) + cut_level * toward, -cut_level * toward, -cut_level * aside], axis=-1)
     rate = np.stack([cosine * rise, k * toward, k * aside], axis=-1)
     order = slice(None, None, -1 if end else 1)
     start, stop = (corners[:, end, :-1], corners[:, end, 1:])[:: -1 if end else 1]

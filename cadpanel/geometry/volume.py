@@ -1,9 +1,10 @@
 """Areas of trimmed skins and volumes of the sheets between them, from formulas and quadrature to rounding error.
 
 A sheet is filled by the parallel skins at every distance h from its own skin, all cut by the same two planes, and h is
-measured along their common normal: volume = integral of area(h) dh. Lengths along a generatrix are linear in h and the
-local width too, so the area is a quadratic in h and three Gauss nodes integrate it exactly. Across a cone patch the
-area is an integral over the sweep angle of a smooth function, which Gauss-Legendre takes to rounding error.
+measured along their common normal: volume = integral of area(h) dh. Lengths along a generatrix are linear in h (of a
+square sheet they do not change) and the local width too, so the area is a quadratic in h and three Gauss nodes
+integrate it exactly. Across a cone patch the area is an integral over the sweep angle of a smooth function, which
+Gauss-Legendre takes to rounding error.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.cone_sections import ConeCut, axis_frame, cut_cone
+from cadpanel.geometry.cone_sections import ConeCut, axis_frame, cut_cone, lifted
 from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross
@@ -65,8 +66,9 @@ def _cone_area(shape: Chain, index: int, patch: ConePatch) -> float:
     """Integral over phi of the integral over the generatrix of (level_radius + height * sin(half_angle))."""
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     angles = 0.5 * patch.sweep * (1.0 + _SWEEP_ABSCISSAE)
+    cut = lifted(frame, shape.lift)
     low, high = (
-        _heights(cut_cone(frame, point, normal), frame.level_radius, patch.half_angle, angles)
+        _heights(cut_cone(cut, point, normal), cut.level_radius, patch.half_angle, angles)
         for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
     )
     middle_radius = frame.level_radius + 0.5 * (low + high) * math.sin(patch.half_angle)

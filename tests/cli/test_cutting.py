@@ -167,6 +167,16 @@ def test_where_no_number_of_panels_holds_the_best_is_delivered_and_said(
     assert (tmp_path / "out" / "panels.step").is_file()
 
 
+def test_a_name_that_no_number_of_panels_gives_is_refused_before_any_fit(
+    run: Run, strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(fewest_panels, "fit", None)
+    words = ("fit", strip, "--unit", "mm", "--divide", "auto", "--max-deviation", "12", "--only", "S9-01")
+    answer = run(*words, "--out", tmp_path / "out")
+    assert (answer.code, answer.is_one_sentence()) == (2, True), answer.err
+    assert "There is no panel 'S9-01' to deliver; there is 'S1-" in answer.err
+
+
 def test_the_number_of_panels_is_chosen_by_the_largest_deviation(run: Run, strip: Path, tmp_path: Path) -> None:
     answer = run("fit", strip, "--divide", "auto", "--out", tmp_path / "out")
     assert answer.code == 2

@@ -114,14 +114,14 @@ def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
 
 def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
     options = "--gap-tolerance 3 --step 2 --seam-turn 5 --evenness 1 --max-kink 20"
-    options += " --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2"
+    options += " --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2 --ends square"
     options += (
         " --skin-side inner"
         " --schema AP214 --restarts 1 --seed 7 --seam-tolerance 0.5 --feature plane-cylinder-plane --method concurrent"
         " --blend 500-900 --blend N-02=45-62.5%"
         " --outputs step,flats --only N-01,*3 --origin keep --k-factor 0.4 --chord 0.02 --roll-pitch 80"
         " --dxf-entities lines --dxf-layers CUT=0,BEND=Folds --dxf-contour-only --dxf-name-length 20 --density 7850"
-        " --stock 1500x3000,2500x4000 --facet-height 0.3"
+        " --stock 1500x3000,2500x4000 --facet-height 0.3 --fixings 8@350,25 --returns 45@6"
         " --mesh-chord 0.2 --mesh-colours deviation --material AlMg3 --author A.N. --organization O"
     )
     answer = run("fit", lip_step, "--out", tmp_path / "out", *options.split())
@@ -155,6 +155,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "seam_tolerance": 0.5,
         "thickness": 5.0,
         "joint": 2.0,
+        "ends": "square",
         "skin_side": "inner",
         "step_schema": "AP214",
         "outputs": ["step", "flats"],
@@ -175,6 +176,8 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "material": "AlMg3",
         "author": "A.N.",
         "organization": "O",
+        "fixings": [8.0, 350.0, 25.0],
+        "returns": [45.0, 6.0],
     }
     assert "AUTOMOTIVE_DESIGN" in (tmp_path / "out" / "panels.step").read_text(encoding="ascii")[:2000]
     assert run("verify", tmp_path / "out").code == 0
@@ -421,6 +424,11 @@ def test_panels_that_fit_no_sheet_of_the_stock_are_named_and_everything_is_deliv
         ("--only N-04", "There is no panel 'N-04' to deliver; there is 'N-03', for example."),
         ("--stock 1500", "Sheets of the stock are written like 1500x3000,2000x4000, not '1500'."),
         ("--dxf-layers CUTS=0", "There is no layer 'CUTS' to name; the layers are CUT, BEND, ROLL, MARK, INFO."),
+        (
+            "--fixings 6.5@400",
+            "Fixing holes are written like 6.5@400,20 (diameter, pitch, distance from edges), not '6.5@400'.",
+        ),
+        ("--returns 30", "Returns are written like 30@3, length and inner radius, not '30'."),
         ("--k-factor 2", "The K-factor must be between 0 and 1, not 2."),
     ],
 )

@@ -1,29 +1,30 @@
-"""The sheet of a chain: two parallel skins, planar end walls in the cut planes, planar side walls."""
+"""The sheet of a chain: two parallel skins, end walls in the cut planes or square to the sheet, planar side walls."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.chain_skin import SkinTopology, skin_topology
+from cadpanel.brep.building.normal_walls import strip_wall
+from cadpanel.brep.building.sheet_faces import SheetFaces
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.vectors import cross
 
 
-def chain_sheet(near: PanelShape, far: PanelShape) -> tuple[Sequence[TopoDS_Face], Sequence[TopoDS_Face]]:
-    """The faces of the skin `near`, and all faces of the sheet between it and the parallel skin `far`."""
+def chain_sheet(near: PanelShape, far: PanelShape) -> SheetFaces:
+    """The faces of the skin `near`, and of the sheet between it and the parallel skin `far`."""
     skin, other = skin_topology(near), skin_topology(far)
     skin_is_top = float((near.points[0] - far.points[0]) @ near.normals[0]) > 0.0
     top, bottom = (skin, other) if skin_is_top else (other, skin)
-    sheet = [*top.faces, *(TopoDS.Face_s(face.Reversed()) for face in bottom.faces), *_walls(near, top, bottom)]
-    return skin.faces, sheet
+    below = [TopoDS.Face_s(face.Reversed()) for face in bottom.faces]
+    own, away = (top.faces, below) if skin_is_top else (below, top.faces)
+    return SheetFaces(skin.faces, own, away, _walls(near, top, bottom))
 
 
 def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[TopoDS_Face]:
-    """Two side walls and two end walls, all with outward normals."""
+    """Two side walls and two end walls, of a square sheet one at the end of each patch; all with outward normals."""
     last = len(shape.points) - 1
     posts = {
         (end, ruling): edges.line_edge(
@@ -33,12 +34,18 @@ def _walls(shape: PanelShape, top: SkinTopology, bottom: SkinTopology) -> list[T
             top.corners[end, ruling],
         )
         for end in range(2)
-        for ruling in (0, last)
+        for ruling in (range(last + 1) if shape.square else (0, last))
     }
     sides = [
         _side_wall(shape, ruling, outward, top, bottom, (posts[0, ruling], posts[1, ruling]))
         for ruling, outward in ((0, -1), (last, 1))
     ]
+    if shape.square:
+        return sides + [
+            _square_wall(shape, (top, bottom), end, index, (posts[end, index], posts[end, index + 1]))
+            for end in range(2)
+            for index in range(last)
+        ]
     ends = [
         _end_wall(top, bottom, end, outward * shape.cut_normals[end], (posts[end, 0], posts[end, last]))
         for end, outward in ((0, -1), (1, 1))
@@ -76,4 +83,28 @@ def _end_wall(
         loop = [edge.Reversed() for edge in reversed(loop)]
     corners = bottom.corners[end]
     wall = surfaces.plane_surface(corners[0], normal, corners[-1] - corners[0])
+    return edges.face_on(wall.surface, wall.agrees, loop)
+
+
+def _square_wall(
+    shape: PanelShape,
+    faces: tuple[SkinTopology, SkinTopology],
+    end: int,
+    index: int,
+    posts: tuple[TopoDS_Edge, TopoDS_Edge],
+) -> TopoDS_Face:
+    """The wall of normals at an end of one patch: a plane, or where the sheet is round a strip."""
+    top, bottom = faces
+    outward = (1.0 if end else -1.0) * (shape.directions[index] + shape.directions[index + 1])
+    loop: list[TopoDS_Shape] = [posts[0], top.ends[end][index], posts[1].Reversed(), bottom.ends[end][index].Reversed()]
+    if end == 0:
+        loop = [edge.Reversed() for edge in reversed(loop)]
+    far = top if top.strips[end] else bottom
+    if index in far.strips[end]:
+        near = bottom if far is top else top
+        along = near.ends[end][index], far.ends[end][index]
+        return strip_wall(far.strips[end][index], loop, along, posts, outward)
+    start, stop = bottom.corners[end, index : index + 2]
+    normal = cross(stop - start, shape.normals[index])
+    wall = surfaces.plane_surface(start, normal if normal @ outward > 0.0 else -normal, stop - start)
     return edges.face_on(wall.surface, wall.agrees, loop)

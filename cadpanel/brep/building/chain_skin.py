@@ -12,8 +12,9 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Vertex
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
-from cadpanel.geometry.cone_sections import EllipticSection, axis_frame, cut_cone, elliptic_section
-from cadpanel.geometry.patches import ConePatch
+from cadpanel.brep.building.normal_walls import NormalStrip, strip_along_arc
+from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection, axis_frame, cut_cone, elliptic_section, lifted
+from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.shape import PanelShape
 
 _BUILDER = BRep_Builder()
@@ -29,6 +30,8 @@ class SkinTopology:
         rulings: k + 1 straight edges from end 0 to end 1.
         ends: [end][patch] edges from ruling i to ruling i + 1.
         faces: k faces with their normals along n.
+        strips: [end][patch] on the other face of a square sheet: the normals between the two faces at the ends of round
+            patches; empty elsewhere.
     """
 
     corners: Array
@@ -36,6 +39,7 @@ class SkinTopology:
     rulings: tuple[TopoDS_Edge, ...]
     ends: tuple[tuple[TopoDS_Edge, ...], tuple[TopoDS_Edge, ...]]
     faces: tuple[TopoDS_Face, ...]
+    strips: tuple[dict[int, NormalStrip], dict[int, NormalStrip]]
 
 
 def chain_skin(shape: PanelShape) -> tuple[TopoDS_Face, ...]:
@@ -54,15 +58,18 @@ def skin_topology(shape: PanelShape) -> SkinTopology:
     ]
     ends: list[list[TopoDS_Edge]] = [[], []]
     faces: list[TopoDS_Face] = []
+    strips: tuple[dict[int, NormalStrip], dict[int, NormalStrip]] = ({}, {})
     for index, patch in enumerate(shape.patches):
-        sections = _sections(shape, index, patch) if isinstance(patch, ConePatch) else (None, None)
+        frame, sections = _sections(shape, index, patch)
         for end, section in enumerate(sections):
             first, last = vertices[end][index : index + 2]
-            edge = (
-                edges.line_edge(first, last, corners[end, index], corners[end, index + 1])
-                if section is None
-                else edges.arc_edge(first, last, section)
-            )
+            if frame is None or section is None:
+                edge = edges.line_edge(first, last, corners[end, index], corners[end, index + 1])
+            elif shape.lift == 0.0:
+                edge = edges.arc_edge(first, last, section)
+            else:
+                strips[end][index] = strip_along_arc(frame, section, -shape.lift)
+                edge = edges.spline_edge(first, last, strips[end][index].far)
             ends[end].append(edge)
         border = (ends[0][index], rulings[index + 1], ends[1][index], rulings[index])
         faces.append(_patch_face(shape, index, corners, sections, border))
@@ -74,23 +81,31 @@ def skin_topology(shape: PanelShape) -> SkinTopology:
         rulings=tuple(rulings),
         ends=(tuple(ends[0]), tuple(ends[1])),
         faces=tuple(faces),
+        strips=strips,
     )
 
 
-def _sections(shape: PanelShape, index: int, patch: ConePatch) -> tuple[EllipticSection, EllipticSection]:
-    frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+Sections = tuple[EllipticSection | None, EllipticSection | None]
+
+
+def _sections(shape: PanelShape, index: int, patch: Patch) -> tuple[AxisFrame | None, Sections]:
+    """The patch that the planes at the ends cut, from its axis, and where they do; nothing of a plane."""
+    if not isinstance(patch, ConePatch):
+        return None, (None, None)
+    own = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    frame = lifted(own, shape.lift)
     low, high = (
         elliptic_section(frame, cut_cone(frame, point, normal))
         for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
     )
-    return low, high
+    return frame, (low, high)
 
 
 def _patch_face(
     shape: PanelShape,
     index: int,
     corners: Array,
-    sections: tuple[EllipticSection | None, EllipticSection | None],
+    sections: Sections,
     border: tuple[TopoDS_Edge, TopoDS_Edge, TopoDS_Edge, TopoDS_Edge],
 ) -> TopoDS_Face:
     """The face of one patch; `border` runs end 0, ruling i + 1, end 1, ruling i, all edges in their own direction."""

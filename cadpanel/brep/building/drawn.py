@@ -13,7 +13,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Shape, TopoD
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cadpanel.arrays import Array
-from cadpanel.brep.building.edges import circle_edge, face_on, line_edge, vertex_at
+from cadpanel.brep.building.edges import face_on, line_edge, turned_edge, vertex_at
 from cadpanel.brep.building.surfaces import plane_surface
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.geometry.biarcs import all_but_straight, arc_circle
@@ -71,7 +71,7 @@ def _arc(first: TopoDS_Vertex, last: TopoDS_Vertex, start: Array, stop: Array, b
         return line_edge(first, last, start, stop)
     center, _ = arc_circle(start[:2], stop[:2], bulge)
     turn = _UP if bulge > 0.0 else -_UP
-    return circle_edge(first, last, np.append(center, 0.0), start, turn, 4.0 * math.atan(abs(bulge)))
+    return turned_edge(first, last, np.append(center, 0.0), start, turn, 4.0 * math.atan(abs(bulge)))
 
 
 def _in_space(points: Array) -> Array:

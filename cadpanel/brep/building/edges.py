@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.Geom import Geom_Circle, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
+from OCP.Geom import Geom_BSplineCurve, Geom_Circle, Geom_Curve, Geom_Ellipse, Geom_Line, Geom_Surface
 from OCP.Geom2d import Geom2d_Curve
 from OCP.gp import gp_Circ, gp_Elips
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
@@ -14,7 +14,9 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Vertex, TopoDS_Wire
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.interpolation import DEGREE, Interpolant
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.splines import pole_array
 from cadpanel.geometry.cone_sections import EllipticSection
 from cadpanel.geometry.vectors import cross
 
@@ -45,13 +47,25 @@ def arc_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, section: EllipticSection
     return _edge(Geom_Ellipse(conic), first, last, section.start, section.stop)
 
 
-def circle_edge(
+def turned_edge(
     first: TopoDS_Vertex, last: TopoDS_Vertex, center: Array, start: Array, turn: Array, sweep: float
 ) -> TopoDS_Edge:
     """The arc of a circle from (3,) start on, by `sweep` radians about the unit vector `turn` through the center."""
     radius = float(np.linalg.norm(start - center))
     circle = gp_Circ(kernel.conic_frame(center, turn, (start - center) / radius), radius)
     return _edge(Geom_Circle(circle), first, last, 0.0, sweep)
+
+
+def circle_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, circle: gp_Circ, start: float, stop: float) -> TopoDS_Edge:
+    """The arc of a circle between two vertices at the angles start and stop."""
+    return _edge(Geom_Circle(circle), first, last, start, stop)
+
+
+def spline_edge(first: TopoDS_Vertex, last: TopoDS_Vertex, spline: Interpolant) -> TopoDS_Edge:
+    """The edge along a spline between two vertices, its parameter the spline's."""
+    curve = Geom_BSplineCurve(pole_array(spline.poles), *spline.kernel_knots(), DEGREE)
+    start, stop = spline.knots[[0, -1]].tolist()
+    return _edge(curve, first, last, start, stop)
 
 
 def _edge(curve: Geom_Curve, first: TopoDS_Vertex, last: TopoDS_Vertex, start: float, stop: float) -> TopoDS_Edge:

@@ -7,6 +7,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape, TopoDS_Ve
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
+from cadpanel.brep.building.sheet_faces import SheetFaces
 from cadpanel.geometry.shape import PolygonShape
 
 
@@ -27,13 +28,14 @@ class _Level:
         self.face: TopoDS_Face = edges.face_on(plane.surface, plane.agrees, self.edges)
 
 
-def polygon_sheet(near: PolygonShape, far: PolygonShape) -> tuple[list[TopoDS_Face], list[TopoDS_Face]]:
-    """The face of the skin `near`, and all faces of the sheet between it and the parallel polygon `far`."""
+def polygon_sheet(near: PolygonShape, far: PolygonShape) -> SheetFaces:
+    """The face of the skin `near`, and the faces of the sheet between it and the parallel polygon `far`."""
     skin, other = _Level(near), _Level(far)
     skin_is_top = float((near.outline[0] - far.outline[0]) @ near.normal) > 0.0
     top, bottom = (skin, other) if skin_is_top else (other, skin)
-    faces = [top.face, TopoDS.Face_s(bottom.face.Reversed()), *_walls(top, bottom)]
-    return [skin.face], faces
+    below = TopoDS.Face_s(bottom.face.Reversed())
+    own, away = (top.face, below) if skin_is_top else (below, top.face)
+    return SheetFaces([skin.face], [own], [away], _walls(top, bottom))
 
 
 def polygon_skin(shape: PolygonShape) -> list[TopoDS_Face]:

@@ -12,11 +12,14 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 from cadpanel.brep.building.chain_sheet import chain_sheet
 from cadpanel.brep.building.chain_skin import chain_skin
 from cadpanel.brep.building.edges import shell_of
+from cadpanel.brep.building.holes import drilled
 from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.building.polygon_sheet import polygon_sheet, polygon_skin
+from cadpanel.brep.building.sheet_faces import SheetFaces
+from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.shape import PanelShape, PolygonShape
-from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, other_face
+from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, other_face, sheet_depth
 
 _BUILDER = BRep_Builder()
 
@@ -48,7 +51,7 @@ def build_solid(shape: Panel, thickness: float, skin_side: SkinSide = "outer") -
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuiltPanel:
-    """A panel's skin and sheet; the sheet's own skin faces are the skin's.
+    """A panel's skin and sheet; the sheet's own skin faces are the skin's, but for its holes.
 
     Attributes:
         straightened: the shape as it was built, and which cones became cylinders.
@@ -61,8 +64,16 @@ class BuiltPanel:
     solid: TopoDS_Solid
 
 
-def build_panel(shape: Panel, thickness: float, skin_side: SkinSide = "outer") -> BuiltPanel:
+def build_panel(
+    shape: Panel, thickness: float, skin_side: SkinSide = "outer", holes: Sequence[Hole] = ()
+) -> BuiltPanel:
     """Skin and sheet at once, which costs little more than the sheet alone; see `build_skin` and `build_solid`.
+
+    Args:
+        shape: the panel.
+        thickness: of its sheet, mm.
+        skin_side: on which side of the sheet its skin lies.
+        holes: through the sheet; the skin has none.
 
     Raises:
         PanelError: if the sheet cannot be built (see `check_buildable`).
@@ -70,8 +81,10 @@ def build_panel(shape: Panel, thickness: float, skin_side: SkinSide = "outer") -
     check_buildable(shape, thickness, skin_side)
     straightened = shape.straightened()
     own = straightened.shape
-    skin, sheet = sheet_faces(own, other_face(own, thickness, skin_side))
-    return BuiltPanel(straightened=straightened, skin=shell_of(skin), solid=_solid_of(sheet))
+    faces = sheet_faces(own, other_face(own, thickness, skin_side))
+    whole = drilled(faces, holes, sheet_depth(thickness, skin_side))
+    solid = _solid_of([*whole.near, *whole.far, *whole.walls])
+    return BuiltPanel(straightened=straightened, skin=shell_of(faces.skin), solid=solid)
 
 
 @singledispatch
@@ -85,10 +98,8 @@ def skin_faces(shape: Panel) -> Sequence[TopoDS_Face]:
 
 
 @singledispatch
-def sheet_faces(near: Panel, _far: Panel) -> tuple[Sequence[TopoDS_Face], Sequence[TopoDS_Face]]:
-    """The faces of the skin `near`, and of the sheet between it and the parallel skin, all with normals outwards.
-
-    The skin's own faces are among those of the sheet. One entry for each kind of panel.
+def sheet_faces(near: Panel, _far: Panel) -> SheetFaces:
+    """The faces of the skin `near`, and of the sheet between it and the parallel skin; one entry for a kind of panel.
 
     Raises:
         TypeError: nobody has said how panels of this kind are built.

@@ -4,27 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from OCP.Geom import Geom_ConicalSurface, Geom_CylindricalSurface, Geom_Plane, Geom_Surface
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
-from scipy.interpolate import BSpline
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.interpolation import DEGREE, Interpolant, interpolate
 from cadpanel.brep.kernel import points as kernel
-from cadpanel.brep.kernel.splines import integer_array, pole_array_2d, real_array
+from cadpanel.brep.kernel.splines import pole_array_2d
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
-
-ARC_DEGREE = 11
-"""Degree of a parameter curve on a cone; no more, as some readers stop at 11."""
-ARC_POLES = (12, 13, 14, 16, 20, 24, 36, 48)
-"""Poles that are tried in turn. The kernel's exact check takes as long as there are spans, and one polynomial, the
-first of these, follows a quarter turn to 3e-12 mm."""
-ARC_ERROR = 2e-11
-"""How far off the arc its parameter curve may be, mm, before more poles are tried; in proportion more on a radius of
-more than a metre, where rounding rules."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,66 +85,23 @@ def generatrix_on_round(surface: RoundSurface, sweep_angle: float, start_height:
 def arc_on_round(surface: RoundSurface, section: EllipticSection) -> Geom2d_Curve:
     """The arc in the parameter plane of the cone, with the parameter of the ellipse: an interpolated spline.
 
-    It has the fewest poles by which it is as close as ARC_ERROR between its nodes, or the closest of those tried: where
-    rounding rules, more poles are worse.
+    The same of an arc whose points lie over those of the section, along the normals: angles and heights are theirs.
     """
-    allowed = ARC_ERROR * max(1.0, 1e-3 * surface.radius)
-    best, least = None, math.inf
-    for poles in ARC_POLES:
-        form = _interpolation(poles)
-        parameters = section.start + (section.stop - section.start) * form.places
+
+    def wanted(parameters: Array) -> Array:
         angles = section.sweep_angles(parameters)
         angles += _whole_turns(angles, surface.sweep)
-        wanted = surface.parameters(angles, section.heights(parameters))
-        # About their middle: on a radius of 50 m the digits that a half turn costs would show.
-        middle = wanted[:poles].mean(axis=0)
-        found = form.inverse @ (wanted[:poles] - middle)
-        off = np.abs(form.between @ found - (wanted[poles:] - middle)).max(axis=0)
-        error = float(off[0] * surface.radius + off[1])
-        if error < least:
-            best, least = (found + middle, form.knots), error
-        if error <= allowed:
-            break
-    assert best is not None
-    return _spline(*best, section)
+        return surface.parameters(angles, section.heights(parameters))
+
+    weights = np.array([surface.radius, 1.0])
+    return plane_spline(interpolate(wanted, section.start, section.stop, weights, surface.radius))
+
+
+def plane_spline(curve: Interpolant) -> Geom2d_Curve:
+    """A spline of the parameter plane as the kernel's."""
+    return Geom2d_BSplineCurve(pole_array_2d(curve.poles), *curve.kernel_knots(), DEGREE)
 
 
 def _whole_turns(angles: Array, sweep: float) -> float:
     """What brings the angles next to the patch's own, which lie between 0 and sweep."""
     return -2.0 * math.pi * round(float(angles.mean() - 0.5 * sweep) / (2.0 * math.pi))
-
-
-class _Interpolation(NamedTuple):
-    """A spline space on [0, 1].
-
-    Attributes:
-        places: (2 n - 1,) n nodes crowded to the ends, then the middles between them.
-        knots: (s + 1,) distinct knots of s spans.
-        inverse: (n, n) from values at the nodes to poles.
-        between: (n - 1, n) from poles to values at the middles.
-    """
-
-    places: Array
-    knots: Array
-    inverse: Array
-    between: Array
-
-
-@lru_cache(maxsize=len(ARC_POLES))
-def _interpolation(poles: int) -> _Interpolation:
-    nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(poles) / (poles - 1))
-    places = np.concatenate([nodes, 0.5 * (nodes[1:] + nodes[:-1])])
-    inner = np.convolve(nodes, np.full(ARC_DEGREE, 1.0 / ARC_DEGREE), mode="valid")[1:-1]
-    knots: Array = np.concatenate([[0.0], inner, [1.0]])
-    clamped: Array = np.concatenate([np.zeros(ARC_DEGREE), knots, np.ones(ARC_DEGREE)])
-    matrix = BSpline.design_matrix(places, clamped, ARC_DEGREE).toarray()
-    inverse = np.asarray(np.linalg.inv(matrix[:poles]), dtype=np.float64)
-    return _Interpolation(places=places, knots=knots, inverse=inverse, between=matrix[poles:])
-
-
-def _spline(poles: Array, knots: Array, section: EllipticSection) -> Geom2d_BSplineCurve:
-    scaled = section.start + (section.stop - section.start) * knots
-    scaled[-1] = section.stop
-    counts = np.ones(len(knots), dtype=np.intp)
-    counts[[0, -1]] = ARC_DEGREE + 1
-    return Geom2d_BSplineCurve(pole_array_2d(poles), real_array(scaled), integer_array(counts), ARC_DEGREE)

@@ -18,6 +18,7 @@ from cadpanel.arrays import Array
 from cadpanel.brep.proof.clearances import Clear, clearances
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
+from cadpanel.brep.proof.hole_checks import check_holes
 from cadpanel.brep.proof.overlaps import unparted
 from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, rebuild
 from cadpanel.brep.proof.rebuilt import unlike_rebuilt
@@ -52,6 +53,8 @@ class Certificate:
         flat_area_error: greatest relative difference of a flat pattern's area from that of the surface in the solid.
         flat_length_error: greatest difference of an edge's length, unrolled, from that on the skin, mm.
         stated_error: greatest relative difference of a volume or area that a file states from the kernel's.
+        holes: number of holes in the solids.
+        hole_error: how far a place of a hole's rim lies off the circle on the flat pattern at most, mm.
         names_kept: whether both files hold exactly the expected names, each once.
         max_corner_error: farthest corner of a skin from where it is expected, mm.
         seam_gaps: measured gap of each expected seam along its whole length, mm, in their order.
@@ -71,6 +74,8 @@ class Certificate:
     flat_area_error: float
     flat_length_error: float
     stated_error: float
+    holes: int
+    hole_error: float
     names_kept: bool
     max_corner_error: float
     seam_gaps: tuple[float, ...]
@@ -115,11 +120,12 @@ def certify(
         _tangency([facts for facts in found if facts.name in chains], label, failures)
         for found, label in ((solids, "solid"), (skins, "skin"))
     ]
-    volume_error, corner_error, stated_error = 0.0, 0.0, 0.0
+    volume_error, corner_error, stated_error, hole_error = 0.0, 0.0, 0.0, 0.0
     flats: list[FlatFacts] = []
     for panel in panels:
         if panel.name in solid_of:
             volume_error = max(volume_error, _check_solid(panel, solid_of[panel.name], failures))
+            hole_error = max(hole_error, check_holes(panel.name, panel.holes, solid_of[panel.name], failures))
         if panel.name in skin_of:
             corner_error = max(corner_error, _check_skin(panel, skin_of[panel.name], failures))
         for label, found, said in (("solid", solid_of, panel.said), ("skin", skin_of, panel.said_of_skin)):
@@ -130,7 +136,8 @@ def certify(
         if panel.name in solid_of and panel.name in skin_of:
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
             if panel.flat is not None:
-                flats.append(FlatFacts(panel.flat, panel.far_planes, solid_of[panel.name], skin_of[panel.name]))
+                read = solid_of[panel.name], skin_of[panel.name]
+                flats.append(FlatFacts(panel.flat, panel.far_planes, *read, panel.holes))
     sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None}
     failures += unlike_rebuilt([*sheets], rebuild(panels_step, [*sheets.values()], helper), solid_of, skin_of)
     flat_errors = check_flats(flats, failures)
@@ -150,6 +157,8 @@ def certify(
         flat_area_error=flat_errors[0],
         flat_length_error=flat_errors[1],
         stated_error=stated_error,
+        holes=sum(len(facts.rims) for facts in solids) // 2,
+        hole_error=hole_error,
         names_kept=names_kept,
         max_corner_error=corner_error,
         seam_gaps=tuple(gaps),
@@ -202,17 +211,17 @@ def _tangency(found: Sequence[ShapeFacts], label: str, failures: list[str]) -> f
 
 def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> float:
     """Everything about one solid but its tangency; returns the relative error of its volume."""
-    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *_walls(panel) * ("plane",)))
+    found, wanted = Counter(facts.face_kinds), Counter[str]((*panel.kinds, *panel.kinds, *panel.walls))
     # One patch meets no other smoothly; the walls of a polygon may, where its outline hardly turns.
     smooth = int((edge_angles(facts.straight_edges, facts.edge_surfaces) < FOLD_ANGLE).sum())
-    wrongly_smooth = len(panel.kinds) > 1 and smooth != 2 * len(panel.kinds) - 2
+    wrongly_smooth = len(panel.kinds) > 1 and smooth != panel.smooth_edges
     error = abs(facts.volume / panel.volume - 1.0)
     problems = {
         f"holds {facts.solids} solids instead of one": facts.solids != 1,
         "does not pass the kernel's exact check": not facts.valid,
         "is not closed": not facts.closed,
         f"has the faces {_described(found)}, expected {_described(wanted)}": wanted != +found,
-        f"has {smooth} smooth edges, expected {2 * len(panel.kinds) - 2}": wrongly_smooth,
+        f"has {smooth} smooth edges, expected {panel.smooth_edges}": wrongly_smooth,
         f"has a volume of {facts.volume:.12g} mm3, expected {panel.volume:.12g}": not error <= VOLUME_LIMIT,
     }
     failures += [f"Panel '{panel.name}': its solid {problem}." for problem, present in problems.items() if present]
@@ -221,14 +230,9 @@ def _check_solid(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -
     return error
 
 
-def _walls(panel: ExpectedPanel) -> int:
-    """Walls of the sheet: two ends and two sides, or one at each edge of a polygon."""
-    return 4 if len(panel.corners) == 2 else panel.corners.shape[1]
-
-
 def _check_far_face(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) -> None:
     """Corners of the solid must lie where the thickness and the skin's side put the far face of each flat patch."""
-    corners = _walls(panel)  # a flat patch of a chain has four, a polygon one at each wall
+    corners = 4 if len(panel.corners) == 2 else panel.corners.shape[1]  # of a flat patch of a chain, or of a polygon
     for index, (point, normal) in enumerate(panel.far_planes, start=1):
         off = np.sort(np.abs((facts.vertices - point) @ normal))
         if not (len(off) >= corners and off[corners - 1] <= POSITION_LIMIT):

@@ -4,21 +4,23 @@ Both walls at a seam are planes. The clear width is measured square to either wa
 outline: along both faces of the sheet, and up and down its corners. It is linear on a wall, so it is least and largest
 on the outline, and an arc of ellipse is extreme where a formula says. Where two walls are not parallel, as at the sides
 of cones, a corner of one may lie where the other has ended: the joint is at least as wide as the space between two
-parallel planes that part the walls.
+parallel planes that part the walls. Square ends that bend have no one plane: there the width is measured along the way
+across the joint, at least and at most between any place of the one wall and any of the other.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.proof.edge_pieces import edge_pieces
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.sampled_curves import POINTS, reach
 from cadpanel.geometry.vectors import unit
 
 CLEAR_LIMIT = 1e-6
@@ -37,11 +39,23 @@ class Clear:
 
 @dataclass(frozen=True, slots=True)
 class _Wall:
-    """A wall: a point on its plane, its unit normal out of the sheet, and its outline."""
+    """A wall: a point on its plane, its unit normal out of the sheet, and its outline.
 
-    point: Array
-    normal: Array
+    One that stands in no one plane has neither point nor normal, and edges that are no lines or arcs, (o, q, 3) points.
+    """
+
     outline: CurvePieces
+    point: Array | None = None
+    normal: Array | None = None
+    others: Array = field(default_factory=lambda: np.empty((0, POINTS, 3)))
+
+    def reach(self, ways: Array) -> tuple[Array, Array]:
+        """(d,) least and greatest inner product of its points with ways (d, 3)."""
+        (least, greatest), others = self.outline.reach(ways), reach(self.others, ways)
+        return (
+            np.minimum(least.min(axis=1), others[0].min(axis=1, initial=np.inf)),
+            np.maximum(greatest.max(axis=1), others[1].max(axis=1, initial=-np.inf)),
+        )
 
 
 def clearances(
@@ -56,7 +70,7 @@ def clearances(
     found: list[Clear | None] = []
     for seam in seams:
         walls = [
-            _wall(solid_of[name], expected[name].corners, edge) if name in solid_of and name in expected else None
+            _wall(solid_of[name], expected[name], edge) if name in solid_of and name in expected else None
             for name, edge in zip(seam.panels, seam.edges, strict=True)
         ]
         first, second = walls
@@ -65,6 +79,10 @@ def clearances(
             found.append(None)
             continue
         clear = _between(first, second, seam.across)
+        if clear is None:
+            failures.append(f"{seam.called}: nothing says across which way its joint is measured.")
+            found.append(None)
+            continue
         found.append(clear)
         failures += _faults(seam, clear, joint if seam.joint is None else seam.joint)
     return found
@@ -84,20 +102,35 @@ def _faults(seam: ExpectedSeam, clear: Clear, joint: float) -> list[str]:
     ]
 
 
-def _wall(solid: ShapeFacts, corners: Array, edge: str) -> _Wall | None:
+def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     """The face of a sheet at one edge: of the planes on which all of the edge lies, the one that leaves the skin."""
+    corners = panel.corners
     chosen = edge_pieces(solid, corners, edge)
     if chosen is None:
         return None
+    if panel.square and edge.startswith("end") and set(panel.kinds) != {"plane"}:
+        return _walls_of_pieces(solid, corners, chosen)
     shared = set.intersection(*(set(faces) for faces in solid.piece_faces[chosen].tolist())) - {-1}
     flat = [face for face in shared if solid.surfaces[face, 6] == 0.0]
     if not flat:
         return None
-    bounds = [(solid.piece_faces == face).any(axis=1) for face in flat]
+    bounds = [solid.bounds(face) for face in flat]
     leaves = [_farthest(solid.piece_ends[own].reshape(-1, 3), corners.reshape(-1, 3)) for own in bounds]
     place = int(np.argmax(leaves))
     surface = solid.surfaces[flat[place]]
-    return _Wall(surface[:3], surface[8] * surface[3:6], solid.pieces.take(bounds[place]))
+    return _Wall(solid.pieces.take(bounds[place]), surface[:3], surface[8] * surface[3:6])
+
+
+def _walls_of_pieces(solid: ShapeFacts, corners: Array, chosen: IntArray) -> _Wall:
+    """The faces at an edge of several pieces: of both at each piece the one that leaves the skin."""
+    flat = corners.reshape(-1, 3)
+    faces = []
+    for pair in solid.piece_faces[chosen].tolist():
+        leaves = [_farthest(solid.piece_ends[solid.bounds(face)].reshape(-1, 3), flat) for face in pair]
+        faces.append(pair[int(np.argmax(leaves))])
+    own = np.asarray(np.isin(solid.piece_faces, faces).any(axis=1))
+    others = solid.other_points[np.isin(solid.other_edges, faces).any(axis=1)]
+    return _Wall(solid.pieces.take(own), others=others)
 
 
 def _farthest(points: Array, corners: Array) -> float:
@@ -105,18 +138,30 @@ def _farthest(points: Array, corners: Array) -> float:
     return float(np.linalg.norm(points[:, None] - corners, axis=-1).min(axis=1).max())
 
 
-def _between(one: _Wall, other: _Wall, across: Array | None) -> Clear:
+def _between(one: _Wall, other: _Wall, across: Array | None) -> Clear | None:
+    if one.normal is None or other.normal is None:
+        if across is None:
+            return None
+        way = unit(across)[None]
+        ahead, behind = other.reach(way), one.reach(way)
+        return _told(float(ahead[0][0] - behind[1][0]), float(ahead[1][0] - behind[0][0]))
     widths = [_beyond(one, other.outline), _beyond(other, one.outline)]
     halfway = unit(one.normal - other.normal)
     ways = np.stack([halfway, halfway if across is None else unit(across)])
-    between = other.outline.reach(ways)[0].min(axis=1) - one.outline.reach(ways)[1].max(axis=1)
+    between = other.reach(ways)[0] - one.reach(ways)[1]
     least = max(float(between.max()), min(least for least, _ in widths))
     largest = max(largest for _, largest in widths)
+    return _told(least, largest)
+
+
+def _told(least: float, largest: float) -> Clear:
     return Clear(round(least, DIGITS) + 0.0, round(largest, DIGITS) + 0.0)
 
 
 def _beyond(wall: _Wall, outline: CurvePieces) -> tuple[float, float]:
     """How far an outline lies beyond a wall's plane, at least and at most."""
+    assert wall.normal is not None
+    assert wall.point is not None
     least, greatest = outline.reach(wall.normal[None])
     level = float(wall.normal @ wall.point)
     return float(least.min()) - level, float(greatest.max()) - level

@@ -9,7 +9,9 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.step.properties import PartData
+from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
 
@@ -31,11 +33,12 @@ class Fitted:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sheet:
-    """What a sheet is built from: the panel, its thickness in mm, and the side of the sheet on which the skin is."""
+    """What a sheet is built from: the panel, its thickness in mm, on which side of the sheet the skin is, and holes."""
 
     shape: Panel
     thickness: float
     skin_side: SkinSide
+    holes: tuple[Hole, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +55,10 @@ class ExpectedPanel:
         flat: what its flat pattern says; None to leave it alone.
         said, said_of_skin: what either file must say of it besides; None to leave that alone.
         placed: where the origin of its coordinates lies in both files, mm.
+        square: whether the walls of its sheet stand square to it; at the ends of round patches they are neither planes
+            nor round then.
+        holes: through its sheet; None where it has none.
+        folded: patches beyond the fit's at side 0 and at side 1: those of returns.
         sheet: what both files hold of it, to be built anew; None to leave that alone.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
@@ -67,7 +74,29 @@ class ExpectedPanel:
     said: PartData | None = None
     said_of_skin: PartData | None = None
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    square: bool = False
+    holes: ExpectedHoles | None = None
+    folded: tuple[int, int] = (0, 0)
     sheet: Sheet | None = None
+
+    @property
+    def walls(self) -> tuple[str, ...]:
+        """Kinds of the walls of its sheet: two ends and two sides, or one at each edge of a polygon; and of holes."""
+        return (*self._outer_walls, *(() if self.holes is None else self.holes.walls))
+
+    @property
+    def smooth_edges(self) -> int:
+        """Straight edges of its solid whose two faces are tangent: between patches, and in holes."""
+        return 2 * len(self.kinds) - 2 + (0 if self.holes is None else self.holes.smooth_edges)
+
+    @property
+    def _outer_walls(self) -> tuple[str, ...]:
+        if len(self.corners) == 1:
+            return int(self.corners.shape[1]) * ("plane",)
+        if not self.square:
+            return 4 * ("plane",)
+        ends = tuple("plane" if kind == "plane" else "other" for kind in self.kinds)
+        return (*ends, *ends, "plane", "plane")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

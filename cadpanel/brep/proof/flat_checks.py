@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.geometry.curve_pieces import CurvePieces
 
@@ -31,7 +32,7 @@ class ExpectedFlat:
     """What a panel's flat pattern says.
 
     Attributes:
-        area: inside its contour, mm2.
+        area: inside its contour, less its holes, mm2.
         share: where the surface that it unrolls lies, from the skin into the sheet, a part of the thickness.
         depth: the thickness, negative where the sheet lies against the skin's normals, mm.
         skin_pieces: lengths of all pieces of the skin's own outline, unrolled, mm.
@@ -44,12 +45,13 @@ class ExpectedFlat:
 
 
 class FlatFacts(NamedTuple):
-    """A flat pattern, the planes of the far faces, and what was found in the files."""
+    """A flat pattern, the planes of the far faces, what was found in the files, and the holes in the sheet."""
 
     expected: ExpectedFlat
     far_planes: Array
     solid: ShapeFacts
     skin: ShapeFacts
+    holes: ExpectedHoles | None = None
 
 
 def check_flats(panels: Sequence[FlatFacts], failures: list[str]) -> tuple[float, float]:
@@ -78,20 +80,28 @@ def check_flats(panels: Sequence[FlatFacts], failures: list[str]) -> tuple[float
 
 def _area_at(panel: FlatFacts) -> float:
     """Area of the surface that is unrolled, from the kernel's numbers."""
-    near, share, depth = float(panel.skin.areas.sum()), panel.expected.share, panel.expected.depth
-    both = float(panel.solid.areas[_main_faces(panel.solid, panel.far_planes, depth)].sum())
+    holes, share, depth = panel.holes, panel.expected.share, panel.expected.depth
+    near = float(panel.skin.areas.sum()) - (0.0 if holes is None else holes.skin_area)
+    both = float(panel.solid.areas[_main_faces(panel, depth)].sum())
     across, mean = both - 2.0 * near, panel.solid.volume / abs(depth) - near
     return near + (6.0 * mean - 2.0 * across) * share + (3.0 * across - 6.0 * mean) * share**2
 
 
-def _main_faces(solid: ShapeFacts, far_planes: Array, depth: float) -> Array:
-    """(f,) which faces are no walls: round ones, and those in the planes of flat patches, near or far."""
-    normals, points = far_planes[:, 1], far_planes[:, 0]
-    flat = (solid.surfaces[:, 6:8] == 0.0).all(axis=1)
+def _main_faces(panel: FlatFacts, depth: float) -> Array:
+    """(f,) which faces are no walls: round ones, and those in the planes of flat patches, near or far.
+
+    Square walls at the ends of round patches are neither planes nor round; holes through flat patches are as wide as
+    they are asked for.
+    """
+    solid, normals, points = panel.solid, panel.far_planes[:, 1], panel.far_planes[:, 0]
+    flat, known = (solid.surfaces[:, 6:8] == 0.0).all(axis=1), np.isfinite(solid.surfaces[:, 6])
     turned = np.linalg.norm(np.cross(solid.surfaces[:, None, 3:6], normals), axis=-1) <= _SAME_PLANE
     heights = np.einsum("fpx,px->fp", solid.surfaces[:, None, :3] - points, normals)
     level = np.minimum(np.abs(heights), np.abs(heights + depth)) <= _SAME_PLANE
-    return np.asarray(~flat | (turned & level).any(axis=-1))
+    drilled = np.zeros(len(flat), dtype=bool)
+    if panel.holes is not None:
+        drilled = (np.abs(solid.surfaces[:, 6] - 0.5 * panel.holes.diameter) <= _SAME_PLANE) & turned.any(axis=-1)
+    return np.asarray(~drilled & ((known & ~flat) | (turned & level).any(axis=-1)))
 
 
 def _lengths(border: CurvePieces) -> Array:

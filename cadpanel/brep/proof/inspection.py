@@ -11,9 +11,10 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
+from OCP.BRepTools import BRepTools
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -28,9 +29,13 @@ from cadpanel.brep.proof.shape_facts import FACE_KINDS, SILENT, ShapeFacts
 from cadpanel.brep.step.file import OpenStep, open_step
 from cadpanel.brep.step.properties import Stated
 from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.sampled_curves import POINTS
 
 # By so many radians nothing as large as a panel is turned.
 _NO_TURN = 1e-13
+_EDGE_POINTS = 24
+RIM_POINTS = 2 * _EDGE_POINTS
+"""Points on a rim, which is two edges."""
 _ROUND = {GeomAbs_Cone: "cone", GeomAbs_Cylinder: "cylinder"}
 
 
@@ -106,6 +111,10 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
     solids = len(shapes_of(shape, TopAbs_SOLID))
     areas, centroids = areas_and_centroids(faces)
     volume, middle = volume_and_centroid(shape) if solids else (0.0, middle_of(areas, centroids))
+    rims = [wire for face in faces for wire in _inner_wires(face)]
+    on_rims = TopTools_IndexedMapOfShape()
+    for wire in rims:
+        TopExp.MapShapes_s(wire, TopAbs_EDGE, on_rims)
     boundary = _boundary(shape, edges, [numbers for _, numbers in surfaces])
     return ShapeFacts(
         name=name,
@@ -124,8 +133,11 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
         vertices=boundary.vertices,
         pieces=_pieces([curve for curve, _ in pieces]),
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
+        inner=np.array([on_rims.Contains(edge) for edge, _ in edges], dtype=bool)[known],
         piece_faces=lies_on[known],
         other_edges=lies_on[~known],
+        other_points=_sampled([edge for (edge, _), curve in zip(edges, curves, strict=True) if curve is None]),
+        rims=np.array([_rim(wire) for wire in rims]).reshape(-1, RIM_POINTS, 3),
         surfaces=boundary.surfaces,
         boundary=boundary,
     )
@@ -219,6 +231,36 @@ def _ends(edge: TopoDS_Edge) -> list[list[float]]:
     return [_xyz(BRep_Tool.Pnt_s(end)) for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))]
 
 
+def _inner_wires(face: TopoDS_Face) -> list[TopoDS_Shape]:
+    """The rims of a face's holes."""
+    wires = shapes_of(face, TopAbs_WIRE)
+    if len(wires) < 2:
+        return []
+    outer = BRepTools.OuterWire_s(face)
+    return [wire for wire in wires if not wire.IsSame(outer)]
+
+
+def _rim(wire: TopoDS_Shape) -> Array:
+    """(RIM_POINTS, 3) points along a rim, as many on each edge; of one that has not two edges some are left out."""
+    return np.resize(np.concatenate([_along(edge, _EDGE_POINTS) for edge in edges_of(wire)]), (RIM_POINTS, 3))
+
+
+def _along(edge: TopoDS_Edge, count: int) -> Array:
+    curve = BRepAdaptor_Curve(edge)
+    places = np.linspace(curve.FirstParameter(), curve.LastParameter(), count, endpoint=False)
+    return np.array([_xyz(curve.Value(place)) for place in places.tolist()])
+
+
+def _sampled(edges: Sequence[TopoDS_Edge]) -> Array:
+    """(o, POINTS, 3) points along edges."""
+    found = []
+    for edge in edges:
+        curve = BRepAdaptor_Curve(edge)
+        places = np.linspace(curve.FirstParameter(), curve.LastParameter(), POINTS)
+        found.append([_xyz(curve.Value(place)) for place in places.tolist()])
+    return np.array(found).reshape(-1, POINTS, 3)
+
+
 def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | None:
     """An edge as rows (center, cosine axis, sine axis, [start, stop, is arc]) and its ends; None if neither."""
     curve = BRepAdaptor_Curve(edge)
@@ -226,10 +268,8 @@ def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | N
     if curve.GetType() == GeomAbs_Line:
         origin, target = np.array(_xyz(curve.Value(start))), np.array(_xyz(curve.Value(stop)))
         rows = [origin.tolist(), (target - origin).tolist(), [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    elif curve.GetType() == GeomAbs_Ellipse:
-        ellipse = curve.Ellipse()
-        axes: gp_Ax2 = ellipse.Position()
-        major, minor = ellipse.MajorRadius(), ellipse.MinorRadius()
+    elif curve.GetType() in (GeomAbs_Ellipse, GeomAbs_Circle):
+        axes, major, minor = _conic(curve)
         rows = [
             _xyz(axes.Location()),
             [major * part for part in _xyz(axes.XDirection())],
@@ -239,6 +279,15 @@ def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | N
     else:
         return None
     return rows, _ends(edge)
+
+
+def _conic(curve: BRepAdaptor_Curve) -> tuple[gp_Ax2, float, float]:
+    """Frame and half axes of an ellipse, or of a circle, which is one."""
+    if curve.GetType() == GeomAbs_Circle:
+        circle = curve.Circle()
+        return circle.Position(), circle.Radius(), circle.Radius()
+    ellipse = curve.Ellipse()
+    return ellipse.Position(), ellipse.MajorRadius(), ellipse.MinorRadius()
 
 
 def _pieces(rows: list[list[list[float]]]) -> CurvePieces:

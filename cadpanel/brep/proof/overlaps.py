@@ -2,8 +2,8 @@
 
 Two sheets share none where a plane parts them: a wall of either, or any other of their flat faces. What a plane of
 planes, cones and cylinders bounds is farthest out, in any direction, on an edge: where a developable face touches a
-plane, it does so along a whole ruling, which ends on edges. So sheets are parted, or not, by their edges alone. The
-kernel is asked only for what is left.
+plane, it does so along a whole ruling, which ends on edges. So does a wall of normals, which is ruled, too. So sheets
+are parted, or not, by their edges alone. The kernel is asked only for what is left.
 """
 
 from __future__ import annotations
@@ -32,18 +32,14 @@ def unparted(solids: Sequence[ShapeFacts]) -> list[tuple[int, int]]:
 
 
 def _box(facts: ShapeFacts) -> tuple[Array, Array]:
-    """The least and greatest coordinates (3,); without end where an edge is of a kind that cannot be measured."""
-    if len(facts.other_edges):
-        return np.full(3, -np.inf), np.full(3, np.inf)
-    least, greatest = facts.pieces.reach(np.eye(3))
+    """The least and greatest coordinates (3,)."""
+    least, greatest = facts.reach(np.eye(3))
     return least.min(axis=1), greatest.max(axis=1)
 
 
 def _parts(one: ShapeFacts, other: ShapeFacts) -> bool:
     """Whether a flat face of the one parts it from the other: the one is behind it, the other beyond."""
-    if len(one.other_edges) or len(other.other_edges):
-        return False
     planes = one.surfaces[one.surfaces[:, 6] == 0.0]
     normals = planes[:, 8:] * planes[:, 3:6]
-    ahead = other.pieces.reach(normals)[0].min(axis=1) - one.pieces.reach(normals)[1].max(axis=1)
+    ahead = other.reach(normals)[0].min(axis=1) - one.reach(normals)[1].max(axis=1)
     return bool(ahead.max(initial=-np.inf) >= -TOUCH)

@@ -16,7 +16,7 @@ def rebuild(sheets: Iterable[Sheet]) -> list[Rebuilt | PanelError]:
     found: list[Rebuilt | PanelError] = []
     for sheet in sheets:
         try:
-            built = build_panel(sheet.shape, sheet.thickness, sheet.skin_side)
+            built = build_panel(sheet.shape, sheet.thickness, sheet.skin_side, sheet.holes)
         except PanelError as error:
             found.append(error)
         else:

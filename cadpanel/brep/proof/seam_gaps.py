@@ -61,6 +61,8 @@ def seam_gaps(
 def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePieces | None:
     """The edge as the fit has it, on the faces in the file; None unless they go on to it."""
     chosen = edge_pieces(skin, panel.corners, edge)
+    if chosen is not None and edge.startswith("end"):
+        chosen = chosen[panel.folded[0] : len(chosen) - panel.folded[1]]
     if chosen is None or not skin.border[chosen].all():
         return None
     if panel.fitted is None:

@@ -13,6 +13,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.proof.boundary import Boundary
 from cadpanel.brep.step.properties import Stated
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
+from cadpanel.geometry.sampled_curves import reach
 
 SILENT = Stated()
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
@@ -38,10 +39,13 @@ class ShapeFacts:
         vertices: (v, 3) mm.
         pieces: the edges that are lines or ellipses.
         piece_ends: (e, 2, 3) their two end vertices, mm.
+        inner: (e,) which of them are on the rims of holes.
         piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
         other_edges: (o, 2) the same for the edges that are neither.
         centroid: (3,) of the volume, or of the area of a shape without solids, in the shape's own coordinates, mm.
         stated: what the file says of it besides.
+        other_points: (o, q, 3) points along these, evenly by their parameter, both ends among them, mm.
+        rims: (r, q, 3) points along the rim of every hole in a face, mm.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
         boundary: all that bounds it.
     """
@@ -60,12 +64,25 @@ class ShapeFacts:
     vertices: Array
     pieces: CurvePieces
     piece_ends: Array
+    inner: BoolArray
     piece_faces: IntArray
     other_edges: IntArray
+    other_points: Array
+    rims: Array
     surfaces: Array
     boundary: Boundary
     centroid: Array
     stated: Stated = SILENT
+
+    def reach(self, directions: Array) -> tuple[Array, Array]:
+        """Least and greatest (d, e + o) inner product of directions (d, 3) with the points of all edges."""
+        known, others = self.pieces.reach(directions), reach(self.other_points, directions)
+        least, greatest = (np.concatenate(pair, axis=1) for pair in zip(known, others, strict=True))
+        return least, greatest
+
+    def bounds(self, face: int) -> BoolArray:
+        """(e,) which of the pieces bound a face, those on the rims of its holes left out."""
+        return np.asarray((self.piece_faces == face).any(axis=1) & ~self.inner)
 
     @property
     def border(self) -> BoolArray:

@@ -9,7 +9,18 @@ from __future__ import annotations
 import math
 
 from OCP.BRep import BRep_Tool
-from OCP.Geom import Geom_ConicalSurface, Geom_Curve, Geom_CylindricalSurface, Geom_Ellipse, Geom_Line, Geom_Plane
+from OCP.Geom import (
+    Geom_BSplineCurve,
+    Geom_BSplineSurface,
+    Geom_Circle,
+    Geom_ConicalSurface,
+    Geom_Curve,
+    Geom_CylindricalSurface,
+    Geom_Ellipse,
+    Geom_Line,
+    Geom_Plane,
+    Geom_Surface,
+)
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Dir, gp_Pnt
 from OCP.TopAbs import TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID
@@ -22,7 +33,7 @@ from cadpanel.brep.step.text import StepText, real, references
 
 
 class UnsupportedGeometry(ValueError):
-    """A shape holds something else than lines, ellipses, planes, cones and cylinders."""
+    """A shape holds something else than lines, circles, ellipses, planes, cones, cylinders and plain splines."""
 
 
 class TopologyWriter:
@@ -52,7 +63,7 @@ class TopologyWriter:
 
     def _face(self, face: TopoDS_Face, surface: int) -> int:
         reversed_face = face.Orientation() == TopAbs_REVERSED
-        bounds = []
+        bounds: list[int] = []
         for wire in children(face, oriented=False):
             # The bound turns about the face's normal, not the surface's: compose face and wire.
             turned = reversed_face != (wire.Orientation() == TopAbs_REVERSED)
@@ -64,23 +75,16 @@ class TopologyWriter:
                 number = self._edge(edge)
                 oriented.append(self._text.add(f"ORIENTED_EDGE('',*,*,#{number},{_flag(forward)})"))
             edge_loop = self._text.add(f"EDGE_LOOP('',{references(oriented)})")
-            bounds.append(self._text.add(f"FACE_OUTER_BOUND('',#{edge_loop},.T.)"))
+            kind = "FACE_BOUND" if bounds else "FACE_OUTER_BOUND"  # holes come behind the outline
+            bounds.append(self._text.add(f"{kind}('',#{edge_loop},.T.)"))
         return self._text.add(f"ADVANCED_FACE('',{references(bounds)},#{surface},{_flag(not reversed_face)})")
 
     def _surface(self, face: TopoDS_Face) -> int:
         """The surface's number; a curved one is noted for every edge of the face."""
         surface = BRep_Tool.Surface_s(face)
-        if not isinstance(surface, (Geom_Plane, Geom_ConicalSurface, Geom_CylindricalSurface)):
-            raise UnsupportedGeometry(f"a face on a {type(surface).__name__}")
-        axes = surface.Position()
-        placement = self._placement(axes.Location(), axes.Direction(), axes.XDirection())
+        number = self._surface_itself(surface)
         if isinstance(surface, Geom_Plane):
-            return self._text.add(f"PLANE('',#{placement})")
-        if isinstance(surface, Geom_CylindricalSurface):
-            number = self._text.add(f"CYLINDRICAL_SURFACE('',#{placement},{real(surface.Radius())})")
-        else:
-            radius, half_angle = real(surface.RefRadius()), real(surface.SemiAngle())
-            number = self._text.add(f"CONICAL_SURFACE('',#{placement},{radius},{half_angle})")
+            return number
         self._parameter_planes[number] = self._text.add(
             "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()"
             "REPRESENTATION_CONTEXT('2D SPACE',''))"
@@ -89,6 +93,45 @@ class TopologyWriter:
             for edge in children(wire, oriented=False):
                 self._curved.setdefault(self._map.Add(edge), []).append((face, number))
         return number
+
+    def _surface_itself(self, surface: Geom_Surface) -> int:
+        if isinstance(surface, Geom_BSplineSurface):
+            return self._spline_surface(surface)
+        if not isinstance(surface, (Geom_Plane, Geom_ConicalSurface, Geom_CylindricalSurface)):
+            raise UnsupportedGeometry(f"a face on a {type(surface).__name__}")
+        axes = surface.Position()
+        placement = self._placement(axes.Location(), axes.Direction(), axes.XDirection())
+        if isinstance(surface, Geom_Plane):
+            return self._text.add(f"PLANE('',#{placement})")
+        if isinstance(surface, Geom_CylindricalSurface):
+            return self._text.add(f"CYLINDRICAL_SURFACE('',#{placement},{real(surface.Radius())})")
+        radius, half_angle = real(surface.RefRadius()), real(surface.SemiAngle())
+        return self._text.add(f"CONICAL_SURFACE('',#{placement},{radius},{half_angle})")
+
+    def _spline_surface(self, surface: Geom_BSplineSurface) -> int:
+        """A surface of poles without weights that closes nowhere."""
+        if surface.IsURational() or surface.IsVRational() or surface.IsUPeriodic() or surface.IsVPeriodic():
+            raise UnsupportedGeometry("a face on a spline surface with weights, or that closes")
+        rows = [
+            references([self._point(surface.Pole(u, v)) for v in range(1, surface.NbVPoles() + 1)])
+            for u in range(1, surface.NbUPoles() + 1)
+        ]
+        counts = [
+            f"({','.join(str(of(index)) for index in range(1, number + 1))})"
+            for of, number in (
+                (surface.UMultiplicity, surface.NbUKnots()),
+                (surface.VMultiplicity, surface.NbVKnots()),
+            )
+        ]
+        knots = [
+            f"({','.join(real(of(index)) for index in range(1, number + 1))})"
+            for of, number in ((surface.UKnot, surface.NbUKnots()), (surface.VKnot, surface.NbVKnots()))
+        ]
+        grid = ",\n".join(rows)
+        return self._text.add(
+            f"B_SPLINE_SURFACE_WITH_KNOTS('',{surface.UDegree()},{surface.VDegree()},({grid}),.UNSPECIFIED.,.F.,.F.,.F.,"
+            f"{counts[0]},{counts[1]},{knots[0]},{knots[1]},.UNSPECIFIED.)"
+        )
 
     def _edge(self, edge: TopoDS_Edge) -> int:
         index = self._map.Add(edge)
@@ -114,6 +157,12 @@ class TopologyWriter:
             axes = curve.Position()
             placement = self._placement(axes.Location(), axes.Direction(), axes.XDirection())
             return self._text.add(f"ELLIPSE('',#{placement},{real(curve.MajorRadius())},{real(curve.MinorRadius())})")
+        if isinstance(curve, Geom_Circle):
+            axes = curve.Position()
+            placement = self._placement(axes.Location(), axes.Direction(), axes.XDirection())
+            return self._text.add(f"CIRCLE('',#{placement},{real(curve.Radius())})")
+        if isinstance(curve, Geom_BSplineCurve) and not (curve.IsRational() or curve.IsPeriodic()):
+            return self._spline(curve, [self._point(curve.Pole(index)) for index in range(1, curve.NbPoles() + 1)])
         raise UnsupportedGeometry(f"an edge on a {type(curve).__name__}")
 
     def _parameter_curve(self, edge: TopoDS_Edge, face: TopoDS_Face, surface: int) -> int:
@@ -133,12 +182,16 @@ class TopologyWriter:
         if not isinstance(curve, Geom2d_BSplineCurve):
             raise UnsupportedGeometry("an edge on a cone without its exact parameter curve")
         poles = [curve.Pole(index) for index in range(1, curve.NbPoles() + 1)]
-        points = references([self._text.shared("CARTESIAN_POINT", (pole.X(), share * pole.Y())) for pole in poles])
+        return self._spline(
+            curve, [self._text.shared("CARTESIAN_POINT", (pole.X(), share * pole.Y())) for pole in poles]
+        )
+
+    def _spline(self, curve: Geom_BSplineCurve | Geom2d_BSplineCurve, points: list[int]) -> int:
         knots = range(1, curve.NbKnots() + 1)
         multiplicities = ",".join(str(curve.Multiplicity(index)) for index in knots)
         values = ",".join(real(curve.Knot(index)) for index in knots)
         return self._text.add(
-            f"B_SPLINE_CURVE_WITH_KNOTS('',{curve.Degree()},{points},.UNSPECIFIED.,.F.,.F.,({multiplicities}),"
+            f"B_SPLINE_CURVE_WITH_KNOTS('',{curve.Degree()},{references(points)},.UNSPECIFIED.,.F.,.F.,({multiplicities}),"
             f"({values}),.UNSPECIFIED.)"
         )
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.drawing.entities import Contour, Entity, Line, Text
+from cadpanel.delivery.drawing.entities import Circle, Contour, Entity, Line, Text
 from cadpanel.delivery.shop_settings import LAYERS, DxfEntities, ShopSettings
 from cadpanel.delivery.source_date import source_date
 from cadpanel.geometry.biarcs import all_but_straight, arc_circle
@@ -97,6 +97,8 @@ def _written(entity: Entity, entities: DxfEntities) -> Iterator[tuple[str, str]]
     """Kind and own tags of what an entity becomes."""
     if isinstance(entity, Line):
         yield "LINE", _line(entity.start, entity.stop)
+    elif isinstance(entity, Circle):
+        yield "CIRCLE", f"100\nAcDbCircle\n{_point(10, entity.middle)} 40\n{entity.radius!r}\n"
     elif isinstance(entity, Text):
         yield "TEXT", _text(entity)
     elif entities == "polyline":

@@ -1,4 +1,4 @@
-"""What a drawing is made of: closed contours of arcs, lines and single-line text, each on a layer. Millimetres."""
+"""What a drawing is made of: closed contours of arcs, lines, circles and single-line text, each on a layer. In mm."""
 
 from __future__ import annotations
 
@@ -36,6 +36,19 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
+class Circle:
+    """A circle about a point (2,)."""
+
+    layer: str
+    middle: Array
+    radius: float
+
+    def moved(self, shift: Array) -> Circle:
+        """The same elsewhere."""
+        return replace(self, middle=self.middle + shift)
+
+
+@dataclass(frozen=True, slots=True)
 class Text:
     """A line of text about a point (2,), or to the right of it, of a height in mm, turned by an angle in radians."""
 
@@ -51,7 +64,7 @@ class Text:
         return replace(self, place=self.place + shift)
 
 
-Entity = Contour | Line | Text
+Entity = Contour | Line | Circle | Text
 Drawing = tuple[Entity, ...]
 WIDTH_OF_A_SIGN = 0.9
 """Of a text's height, about."""
@@ -70,6 +83,8 @@ def extents(drawing: Sequence[Entity]) -> tuple[Array, Array]:
             points.append(_reach(entity.vertices))
         elif isinstance(entity, Line):
             points.append(np.stack([entity.start, entity.stop]))
+        elif isinstance(entity, Circle):
+            points.append(np.stack([entity.middle - entity.radius, entity.middle + entity.radius]))
         else:
             way = np.array([np.cos(entity.angle), np.sin(entity.angle)])
             half = 0.5 * WIDTH_OF_A_SIGN * entity.height * len(entity.words) * way

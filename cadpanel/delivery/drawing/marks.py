@@ -65,6 +65,8 @@ def _sentences(part: FlatPart, record: PanelModel, sheet: SheetSettings, shop: S
             f"bend {number} {bend.direction}: inner radius {bend.radius[0]:.1f} to {bend.radius[1]:.1f} mm, "
             f"sweep {bend.sweep:.2f} deg, {bend.lengths[0]:.1f} mm at end 0, {bend.lengths[1]:.1f} mm at end 1"
         )
+    if part.fixings is not None:
+        yield f"{len(part.fixings.found.holes)} holes of {part.fixings.rule.diameter:g} mm"
     for edge, (least, largest) in record.bevels.items():
         if edge.startswith("end"):
             yield f"{edge}: bevel {least:.1f} to {largest:.1f} deg"

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.drawing.entities import Contour, Drawing, Entity, Line
+from cadpanel.delivery.drawing.entities import Circle, Contour, Drawing, Entity, Line
 from cadpanel.delivery.drawing.marks import info, marks
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.report import PanelModel, SeamModel
@@ -33,6 +33,10 @@ def part_drawings(
     drawings: list[Drawing] = []
     for part, record, contour in zip(parts, records, chains, strict=True):
         drawn: list[Entity] = [Contour(shop.layer("CUT"), contour)]
+        if part.fixings is not None:
+            drawn += [
+                Circle(shop.layer("CUT"), middle, 0.5 * part.fixings.rule.diameter) for middle in part.fixings.middles
+            ]
         if not shop.dxf_contour_only:
             drawn += [Line(shop.layer("BEND"), *line) for line in bend_lines(part)]
             drawn += [Line(shop.layer("ROLL"), *line) for line in roll_lines(part, shop.roll_pitch)]

@@ -82,6 +82,7 @@ def _part_faults(part: FlatPart, layers: dict[str, list[Any]], shop: ShopSetting
     if len(contours) != 1:
         yield 0.0, f"it holds {len(contours)} closed contours on the layer that is cut instead of one"
         return
+    yield _hole_faults(part, layers.get(shop.layer("CUT"), []))
     curves, vertices = part.pattern.curves, contours[0]
     places = curves.points(np.broadcast_to(np.linspace(0.0, 1.0, _PLACES), (len(curves), _PLACES)))
     off = float(off_arcs(vertices, places.reshape(-1, 2)).max())
@@ -96,6 +97,24 @@ def _part_faults(part: FlatPart, layers: dict[str, list[Any]], shop: ShopSetting
         found = [entity for entity in layers.get(shop.layer(role), []) if entity.dxftype() == "LINE"]
         drawn = np.array([[line.dxf.start.vec2, line.dxf.end.vec2] for line in found]).reshape(-1, 2, 2)
         yield 0.0, "" if _same_lines(drawn, np.concatenate(alike)) else f"its lines on the layer {role} lie elsewhere"
+
+
+def _hole_faults(part: FlatPart, entities: Sequence[Any]) -> tuple[float, str]:
+    """How far off a circle that is cut lies, and what is wrong with circles, or nothing."""
+    found = [entity for entity in entities if entity.dxftype() == "CIRCLE"]
+    drawn = np.array([[*entity.dxf.center.vec2, entity.dxf.radius] for entity in found]).reshape(-1, 3)
+    middles = np.empty((0, 2)) if part.fixings is None else part.fixings.middles
+    if len(drawn) != len(middles):
+        return 0.0, f"it holds {len(drawn)} circles on the layer that is cut instead of {len(middles)}"
+    if part.fixings is None or not len(middles):
+        return 0.0, ""
+    apart = np.linalg.norm(drawn[:, None, :2] - middles, axis=-1)
+    off = max(
+        float(apart.min(axis=0).max()),
+        float(apart.min(axis=1).max()),
+        float(np.abs(drawn[:, 2] - 0.5 * part.fixings.rule.diameter).max()),
+    )
+    return off, f"a circle on the layer that is cut is {off:.3g} mm off" if off > SAME_PLACE else ""
 
 
 def _same_lines(drawn: Array, wanted: Array) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from cadpanel.delivery.records.jsonfile import Direction, NonNegative, NonNegativeCount, Positive, Record
+from cadpanel.delivery.records.jsonfile import Direction, NonNegative, NonNegativeCount, Positive, Record, Vector
 
 Pair = tuple[float, float]
 
@@ -50,6 +50,24 @@ class BendModel(Record):
     lengths: Pair
     angles: Pair
     hits: NonNegativeCount
+
+
+class FixingModel(Record):
+    """A fixing hole.
+
+    Attributes:
+        edge: along which it stands.
+        patch: of the panel in which it lies.
+        flat: its middle on the flat pattern, mm.
+        point: its middle on the panel's skin, mm.
+        normal: of the skin there, along which it is drilled.
+    """
+
+    edge: str
+    patch: NonNegativeCount
+    flat: Pair
+    point: Vector
+    normal: Vector
 
 
 class CutModel(Record):

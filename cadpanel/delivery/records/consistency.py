@@ -49,7 +49,10 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     sheet = report.settings.sheet()
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
     failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
-    failures += [fault for panel in report.panels for fault in shape_faults(panel, recorded_shape(panel, depth))]
+    square = report.settings.ends == "square"
+    failures += [
+        fault for panel in report.panels for fault in shape_faults(panel, recorded_shape(panel, depth, square=square))
+    ]
     counted = Counter(panel.feature for panel in report.panels)
     if report.features != counted:
         failures.append(f"The report counts {report.features} panels by feature, its list has {dict(counted)}.")
@@ -307,7 +310,7 @@ def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
 
 
 def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
-    for key in ("solids", "skins", "valid", "face_kinds", "names_kept"):
+    for key in ("solids", "skins", "valid", "face_kinds", "holes", "names_kept"):
         was, now = getattr(stated, key), getattr(found, key)
         if was != now:
             yield f"The certificate in the report says {key} = {was}, the files show {now}."
@@ -318,6 +321,7 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         ("volume_error", 1e-9),
         ("flat_area_error", 1e-9),
         ("flat_length_error", SAME_LENGTH),
+        ("hole_error", SAME_LENGTH),
         ("max_seam_gap", SAME_LENGTH),
     ):
         was, now = getattr(stated, key), getattr(found, key)

@@ -10,8 +10,9 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.file_names import file_names
-from cadpanel.delivery.records.blanks import BendModel, BlankModel, Pair
-from cadpanel.delivery.records.from_shape import radius_ranges
+from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
+from cadpanel.delivery.records.blanks import BendModel, BlankModel, FixingModel, Pair
+from cadpanel.delivery.records.from_shape import radius_ranges, vector
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.geometry.bevels import edge_bevels
@@ -42,6 +43,7 @@ class FlatPart:
         bevels: of each edge, as the report says them, degrees.
         share: where that surface lies, from the skin into the sheet, a part of the thickness.
         skin_pieces: lengths of all pieces of the skin's own outline, unrolled, mm.
+        fixings: its holes; None where none are asked for.
     """
 
     pattern: FlatPattern
@@ -51,6 +53,21 @@ class FlatPart:
     bevels: dict[str, Pair]
     share: float
     skin_pieces: Array
+    fixings: PanelFixings | None = None
+
+    @property
+    def holes(self) -> tuple[FixingModel, ...]:
+        """What the report says of its holes."""
+        if self.fixings is None:
+            return ()
+        found = []
+        for hole in self.fixings.found.holes:
+            (point,), (normal,) = self.fixings.places[hole.patch].on_skin(hole.place[None])
+            x, y = hole.place.tolist()
+            found.append(
+                FixingModel(edge=hole.edge, patch=hole.patch, flat=(x, y), point=vector(point), normal=vector(normal))
+            )
+        return tuple(found)
 
 
 def flat_parts(shapes: Sequence[Panel], sheet: SheetSettings, shop: ShopSettings) -> tuple[FlatPart, ...]:
@@ -81,6 +98,7 @@ def flat_parts(shapes: Sequence[Panel], sheet: SheetSettings, shop: ShopSettings
             bevels=_bevels(shape, sheet),
             share=abs(offset) / sheet.thickness,
             skin_pieces=pieces,
+            fixings=panel_fixings(shape, sheet, shop),
         )
         for shape, pattern, size, name, offset, pieces in zip(
             shapes, patterns, flat_sizes(patterns), names, offsets.tolist(), skin_pieces, strict=True

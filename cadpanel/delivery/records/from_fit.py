@@ -115,9 +115,21 @@ def with_flat_parts(
                 "other_face": rows(panel.other.corners()),
                 "cuts": cut_models(panel.shape),
                 "bevels": part.bevels,
+                "fixings": part.holes,
+                "notes": (*record.notes, *_fixing_note(part)),
             }
         )
         for record, panel, part in zip(records, built, parts, strict=True)
+    )
+
+
+def _fixing_note(part: FlatPart) -> tuple[str, ...]:
+    """What to say of edges along which not every hole has room."""
+    if part.fixings is None or not part.fixings.found.short:
+        return ()
+    return (
+        f"Not every fixing hole has room along {' and '.join(part.fixings.found.short)}: what would come too near to "
+        "another edge, a bend's beginning or a hole is left out.",
     )
 
 
@@ -142,6 +154,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         fitted=fitted_model(built.fitted),
         patches=patch_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
+        returns=built.returns,
         moved=built.moved,
         notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
     )

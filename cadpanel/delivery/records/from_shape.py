@@ -12,7 +12,7 @@ from cadpanel.delivery.records.blanks import CutModel, Pair
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.delivery.records.report import FittedModel
-from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, radius_range
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, lifted, radius_range
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -114,10 +114,12 @@ def _round_model(shape: PanelShape, index: int, patch: ConePatch) -> ConePatchMo
 
 def _radii(shape: PanelShape, frame: AxisFrame) -> tuple[float, float]:
     """Smallest and largest distance of the trimmed patch from its axis; both lie on the sections at its ends."""
-    radii = np.abs(
+    cut = lifted(frame, shape.lift)
+    found = np.array(
         [
-            radius_range(cut_cone(frame, point, normal), frame.sweep)
+            radius_range(cut_cone(cut, point, normal), frame.sweep)
             for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
         ]
     )
+    radii = np.abs(found + (frame.level_radius - cut.level_radius))
     return float(radii.min()), float(radii.max())

@@ -50,8 +50,19 @@ def _wrong(record: PanelModel, part: FlatPart, density: float) -> Iterator[str]:
         not np.abs(np.subtract(record.bevels[edge], bevel)).max() <= SAME_LENGTH for edge, bevel in part.bevels.items()
     ):
         yield "bevel"
+    if not _same_fixings(record, part):
+        yield "fixing hole"
     if len(record.bends) != len(part.bends) or not all(map(_same_bend, record.bends, part.bends)):
         yield "bend"
+
+
+def _same_fixings(record: PanelModel, part: FlatPart) -> bool:
+    stated, found = (
+        np.array([[*hole.flat, *hole.point, *hole.normal, hole.patch] for hole in holes]).reshape(-1, 9)
+        for holes in (record.fixings, part.holes)
+    )
+    edges = [hole.edge for hole in record.fixings] == [hole.edge for hole in part.holes]
+    return edges and bool(np.abs(stated - found).max(initial=0.0) <= SAME_LENGTH)
 
 
 def _same_bend(one: BendModel, other: BendModel) -> bool:

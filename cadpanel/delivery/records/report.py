@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from cadpanel.delivery.records.blanks import BendModel, BlankModel, CutModel, Pair
+from cadpanel.delivery.records.blanks import BendModel, BlankModel, CutModel, FixingModel, Pair
 from cadpanel.delivery.records.jsonfile import (
     NonNegative,
     NonNegativeCount,
@@ -159,6 +159,8 @@ class PanelModel(Record):
         cuts: the planes in which its ends lie; none of a polygon.
         bevels: of each edge the least and the largest angle between wall and sheet normal, square to the edge; positive
             where the outer face is the shorter one. Along straight edges both are one; 0 where the wall is square.
+        fixings: its holes, in the order of the flat pattern's outline.
+        returns: its sides that are folded inwards; each is two patches, a cylinder and a plane beyond it.
     """
 
     name: str
@@ -187,6 +189,8 @@ class PanelModel(Record):
     other_face: tuple[tuple[Vector, ...], ...] = ()
     cuts: tuple[CutModel, ...] = ()
     bevels: dict[Edge, Pair] = Field(default_factory=dict)
+    fixings: tuple[FixingModel, ...] = ()
+    returns: tuple[Edge, ...] = ()
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:
@@ -313,6 +317,8 @@ class CertificateModel(Record):
             that it unrolls.
         flat_length_error: largest difference between an edge of a skin and the same edge unrolled, mm.
         stated_error: largest relative difference of a volume or area that the STEP files state from the kernel's.
+        holes: how many holes were found in panels.step.
+        hole_error: how far, at most, a place of a hole's rim lies off the circle that is drawn on the flat pattern, mm.
         names_kept: whether every panel was found again under its name.
         max_seam_gap: mm, measured on the faces that were read, carried on to where the fit has cut them.
         clear: the least and the largest clear width of all joints, mm; None without seams.
@@ -331,6 +337,8 @@ class CertificateModel(Record):
     flat_area_error: NonNegative = 0.0
     flat_length_error: NonNegative = 0.0
     stated_error: NonNegative = 0.0
+    holes: NonNegativeCount = 0
+    hole_error: NonNegative = 0.0
     names_kept: bool
     max_seam_gap: NonNegative
     clear: ClearModel | None = None

@@ -84,6 +84,7 @@ class SettingsModel(ComparisonSettingsModel):
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
             nothing is said of sheets that overlap, either.
+        ends: "square" where walls stand square to the sheet.
         skin_side: "outer" where the skin is the sheet's outer face.
         step_schema: of the STEP files.
         outputs: those that were asked for; None for all that need no asking.
@@ -99,6 +100,8 @@ class SettingsModel(ComparisonSettingsModel):
         mesh_chord: how far triangles may lie from exact faces, mm.
         mesh_colours: what colours of meshes tell.
         material, author, organization: as files name them; empty where they name none.
+        fixings: of fixing holes the diameter, the largest pitch and the distance from edges, mm; None without.
+        returns: of folded sides the length on the outer face and the inner radius, mm; None without.
     """
 
     feature: str
@@ -108,6 +111,7 @@ class SettingsModel(ComparisonSettingsModel):
     rules: dict[str, Any] | None = None
     thickness: NonNegative
     joint: NonNegative | None = None
+    ends: Literal["bevel", "square"] = "bevel"
     skin_side: Literal["outer", "inner"]
     step_schema: Literal["AP242", "AP214"]
     outputs: tuple[str, ...] | None = None
@@ -128,11 +132,17 @@ class SettingsModel(ComparisonSettingsModel):
     material: str = ""
     author: str = ""
     organization: str = ""
+    fixings: tuple[float, float, float] | None = None
+    returns: tuple[float, float] | None = None
 
     def sheet(self) -> SheetSettings:
         """The settings of the sheet, as they were asked for."""
         return SheetSettings(
-            thickness=self.thickness, joint=self.joint or 0.0, skin_side=self.skin_side, schema=self.step_schema
+            thickness=self.thickness,
+            joint=self.joint or 0.0,
+            ends=self.ends,
+            skin_side=self.skin_side,
+            schema=self.step_schema,
         )
 
     def shop(self) -> ShopSettings:

@@ -10,6 +10,7 @@ from cadpanel.arrays import Array
 from cadpanel.delivery.records.from_shape import radius_ranges
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel
+from cadpanel.delivery.records.to_shape import unfolded_rulings
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE
 
@@ -50,7 +51,8 @@ def shape_faults(record: PanelModel, shape: PanelShape | PolygonShape) -> Iterat
         off = _off_cuts(np.array(record.fitted.corners), record)
         if not off <= SAME_CORNER:
             yield f"{name}: a corner of the report's fitted panel lies {off:.3g} mm from the plane that cuts it there."
-        beside = _beside_rulings(np.array(record.fitted.corners), np.array(record.corners))
+        unfolded = slice(*unfolded_rulings(record))
+        beside = _beside_rulings(np.array(record.fitted.corners), np.array(record.corners)[:, unfolded])
         if not beside <= SAME_LENGTH:
             yield f"{name}: a corner of the report's fitted panel lies {beside:.3g} mm beside the panel's ruling."
 

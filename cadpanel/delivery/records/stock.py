@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.records.report import ReportModel
 
 # Panels that are named; the others are counted.
@@ -11,11 +12,12 @@ _NAMED = 5
 
 
 def stock_shortfall(report: ReportModel) -> str | None:
-    """What to say of panels that fit no sheet of the stock, and how large a sheet must be; None where all fit."""
+    """What to say of delivered panels that fit no sheet of the stock, and of how large one must be; None if all fit."""
     stock = report.settings.stock
     if not stock:
         return None
-    blanks = {panel.name: panel.blank for panel in report.panels if panel.blank is not None}
+    own = set(chosen_panels([panel.name for panel in report.panels], report.settings.only))
+    blanks = {panel.name: panel.blank for panel in report.panels if panel.blank is not None and panel.name in own}
     unfit = {name: blank for name, blank in blanks.items() if blank.stock is None}
     if not unfit:
         return None

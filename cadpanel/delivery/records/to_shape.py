@@ -13,16 +13,18 @@ from cadpanel.delivery.records.report import PanelModel
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.returns import PATCHES, SIDES
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.vectors import cross, unit
 
 
-def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
+def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape:
     """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm.
 
     Args:
         panel: the record.
         depth: where the sheet's other face lies, mm along the skin's normal.
+        square: whether the sheet's walls stand square to it.
 
     Raises:
         DeliveryError: the record does not say how the panel is cut, or what part it is.
@@ -44,7 +46,12 @@ def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape
         (plane,) = panel.patches
         assert isinstance(plane, PlanePatchModel)
         return PolygonShape(
-            name=panel.name, feature=panel.feature, outline=corners[0], normal=np.array(plane.normal), posts=moves[0]
+            name=panel.name,
+            feature=panel.feature,
+            outline=corners[0],
+            normal=np.array(plane.normal),
+            posts=None if square else moves[0],
+            square=square,
         )
     directions = unit(corners[1] - corners[0])
     normals = np.empty_like(directions)
@@ -63,8 +70,15 @@ def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape
         patches=tuple(patches),
         cut_points=np.array([cut.offset for cut in panel.cuts])[:, None] * cuts,
         cut_normals=cuts,
-        side_leans=_side_leans(moves, cross(directions, normals), patches),
+        side_leans=np.zeros(2) if square else _side_leans(moves, cross(directions, normals), patches),
+        square=square,
     )
+
+
+def unfolded_rulings(panel: PanelModel) -> tuple[int, int]:
+    """From which to which corner of its rows a panel is as it was fitted: beyond lie its returns."""
+    first, last = (PATCHES * (side in panel.returns) for side in SIDES)
+    return first, len(panel.corners[0]) - last
 
 
 def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
@@ -79,9 +93,11 @@ def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
     """
     if panel.fitted is None:
         return recorded_shape(panel, depth)
-    moves = np.array(panel.other_face) - np.array(panel.corners)
+    own = slice(*unfolded_rulings(panel))
+    moves = (np.array(panel.other_face) - np.array(panel.corners))[:, own]
     other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
-    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other}
+    patches = panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
+    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other, "patches": patches}
     return recorded_shape(panel.model_copy(update=uncut), depth)
 
 

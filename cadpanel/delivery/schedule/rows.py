@@ -19,7 +19,7 @@ PANEL_HEADINGS = (
     *("blank length mm", "blank width mm", "area m2", "mass kg", "stock"),
     *("largest deviation mm", "RMS deviation mm", "largest gap mm", "largest kink deg"),
     *("end 0 bevel least deg", "end 0 bevel largest deg", "end 1 bevel least deg", "end 1 bevel largest deg"),
-    *("other edges bevel least deg", "other edges bevel largest deg"),
+    *("other edges bevel least deg", "other edges bevel largest deg", "fixing holes"),
 )
 BEND_HEADINGS = (
     *("bend", "direction", "inner radius least mm", "inner radius largest mm", "sweep deg", "half angle deg"),
@@ -57,7 +57,8 @@ def _panel_cells(
     cells += [_round(blank.width, 2), _round(blank.height, 2), _round(blank.area / _MM2_PER_M2, 6)]
     cells += [_round(panel.mass, 3), blank.stock, _round(panel.max_deviation, 3), _round(panel.rms_deviation, 3)]
     cells += [_round(gap, 3), _round(kink, 3)]
-    return cells + [_round(angle, 2) for pair in (*bevels, (min(others), max(others))) for angle in pair]
+    cells += [_round(angle, 2) for pair in (*bevels, (min(others), max(others))) for angle in pair]
+    return [*cells, len(panel.fixings)]
 
 
 def _bend_cells(number: int, bend: BendModel) -> list[Cell]:
@@ -82,7 +83,7 @@ def _worst_of_seams(seams: Iterable[SeamModel]) -> Mapping[str, tuple[float, flo
 
 def _totals(contents: Contents) -> Iterator[Row]:
     """How many panels, how much area and how heavy, by feature, thickness and sheet; bends by radius."""
-    yield ("totals of", "", "panels", "area m2", "mass kg")
+    yield ("totals of", "", "panels", "area m2", "mass kg", "fixing holes")
     panels = contents.records
     yield _sum("all panels", "", panels)
     thickness = f"{contents.sheet.thickness:g}"
@@ -126,4 +127,5 @@ def _grouped(panels: Sequence[PanelModel], key: Callable[[PanelModel], str]) -> 
 def _sum(what: str, value: str, panels: Sequence[PanelModel]) -> Row:
     area = sum(panel.blank.area for panel in panels if panel.blank is not None) / _MM2_PER_M2
     mass = sum(panel.mass for panel in panels if panel.mass is not None)
-    return (what, value, len(panels), _round(area, 6), _round(mass, 3))
+    holes = sum(len(panel.fixings) for panel in panels)
+    return (what, value, len(panels), _round(area, 6), _round(mass, 3), holes)

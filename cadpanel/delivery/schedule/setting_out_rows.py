@@ -15,10 +15,10 @@ _DIGITS = Decimal("0.0001")
 
 
 def setting_out_rows(contents: Contents) -> Iterator[Row]:
-    """Headings, and the corners of every skin, those in which patches meet among them."""
+    """Headings, the corners of every skin, those in which patches meet among them, and the middles of its holes."""
     yield HEADINGS
     for panel in contents.records:
-        for corner, place in _corners(panel):
+        for corner, place in (*_corners(panel), *_fixings(panel)):
             # Map-grid coordinates have ten digits before the point: a double would lose those behind it.
             sums = [Decimal(own) + Decimal(offset) for own, offset in zip(place, contents.origin, strict=True)]
             yield (panel.name, corner, *(number.quantize(_DIGITS) + 0 for number in sums))
@@ -35,3 +35,9 @@ def _corners(panel: PanelModel) -> Iterator[tuple[str, tuple[float, float, float
         for ruling, place in enumerate(row):
             side = {0: "side 0", last: "side 1"}.get(ruling, f"ruling {ruling}")
             yield f"end {end}, {side}", place
+
+
+def _fixings(panel: PanelModel) -> Iterator[tuple[str, tuple[float, float, float]]]:
+    """Middles of fixing holes on the skin, numbered along the flat pattern's outline."""
+    for number, hole in enumerate(panel.fixings, start=1):
+        yield f"fixing {number}, {hole.edge}", hole.point

@@ -8,10 +8,10 @@ import pytest
 from cadpanel.delivery.records.stock import stock_shortfall
 
 
-def report(stock: Any, *sizes: tuple[float, float, str | None]) -> Any:
+def report(stock: Any, *sizes: tuple[float, float, str | None], only: tuple[str, ...] = ()) -> Any:
     blanks = [SimpleNamespace(width=long, height=wide, stock=sheet) for long, wide, sheet in sizes]
     panels = [SimpleNamespace(name=f"P-{i}", blank=blank) for i, blank in enumerate(blanks)]
-    return SimpleNamespace(settings=SimpleNamespace(stock=stock), panels=panels)
+    return SimpleNamespace(settings=SimpleNamespace(stock=stock, only=only), panels=panels)
 
 
 def test_all_is_well_without_a_stock_and_where_every_panel_fits() -> None:
@@ -30,3 +30,13 @@ def test_panels_that_fit_no_sheet_are_named_and_counted(count: int) -> None:
     )
     assert ("and 2 more" in said) == (count == 7)
     assert "a sheet of 3101x900 mm" in said
+
+
+def test_panels_that_are_not_delivered_are_not_named() -> None:
+    stock, sizes = ((1500.0, 3000.0),), [(3100.0, 900.0, None), (900.0, 900.0, "1500x3000"), (4100.0, 900.0, None)]
+    assert stock_shortfall(report(stock, *sizes, only=("P-1",))) is None
+    said = stock_shortfall(report(stock, *sizes, only=("P-0", "P-1")))
+    assert said is not None
+    assert said.startswith("1 of 2 blanks fit")
+    assert "P-2" not in said
+    assert "3100x900" in said

@@ -11,6 +11,7 @@ from cadpanel.terms.limits.flange_width import FlangeWidth
 from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.obliqueness import Obliqueness
 from cadpanel.terms.limits.seam_turn import SeamTurn
 
 LIMITS: tuple[Limit, ...] = (
@@ -21,4 +22,5 @@ LIMITS: tuple[Limit, ...] = (
     DriftAcross(),
     MinRadius(),
     FlangeWidth(),
+    Obliqueness(),
 )

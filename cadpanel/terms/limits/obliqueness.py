@@ -23,8 +23,8 @@ from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
 
-# Ends are held so much squarer than they must be: the walls at a seam stand a little askew of the cuts.
-_SQUARER = 1.1
+# Ends are held a little squarer than they must be, so that rounding cannot break them: panels of 12 degrees are cut so.
+_SQUARER = 1.01
 
 
 class Obliqueness(Limit):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cadpanel.fitting.methods.concurrent import gather, seams_held
+from cadpanel.fitting.methods.concurrent import seams_held
 from cadpanel.fitting.methods.holding import MARGIN, seam_excess
 from cadpanel.fitting.methods.kinks import less_kinked
 from cadpanel.fitting.methods.local import fit_local
@@ -27,7 +27,7 @@ def test_what_comes_nearer_to_what_is_asked_for_is_kept_and_what_must_hold_holds
     lip, settings = reference(random_lip(5, 3)), FitSettings(max_kink=1.0)
     problem, begin = pose(lip, [settings.feature_for(4)] * 3)
     limits = problem.limits(settings, MARGIN)
-    start, _ = gather(problem, settings, limits, fit_local(problem, lip, begin, settings).unknowns)
+    start = fit_local(problem, lip, begin, settings).unknowns
     model = HeldObjective(problem, [problem.deviation], [*seams_held(problem, settings, start), *limits])
     asked = [term.hold.radius.copy() for term in model.held]
     stuck = HeldSolution(interior_point(model, model.starting_from(start), Limits(steps=0)), (Stop.STALLED,), 7)

@@ -76,7 +76,7 @@ def test_what_is_held_is_what_is_measured_a_little_squarer(name):
     (of,) = {group.feature for group in problem.layout.groups}
     slopes = [list(of.free).index(number) for number in of.cut_numbers[:, 1:].reshape(-1) if number in of.free]
     random = np.random.default_rng(2)
-    unknowns[:, slopes] = np.linspace(0.0, 6.0, 60)[:, None] * random.uniform(-1.0, 1.0, (60, len(slopes)))
+    unknowns[:, slopes] = np.linspace(0.0, 12.0, 60)[:, None] * random.uniform(-1.0, 1.0, (60, len(slopes)))
     (term,) = (one for one in problem.limits(FitSettings()) if isinstance(one, ObliquenessTerm))
     held = (term.hold.ratio(term.vectors(problem.state(unknowns))) <= 1.0).all(axis=1)
     built = kept(panel_shapes(problem, unknowns))

@@ -16,6 +16,27 @@ class ReferenceFileError(CadpanelError, ValueError):
     """The reference cannot be read, or holds nothing that a panel can be made of."""
 
 
+class NoStripError(ReferenceFileError):
+    """A surface without two long edges, where a strip was to be divided.
+
+    Attributes:
+        fault: which surface, and what it has instead.
+        remedy: what else cuts it, once that is known.
+    """
+
+    def __init__(self, fault: str, remedy: str | None = None) -> None:
+        super().__init__(f"{fault}." if remedy is None else f"{fault}: {remedy}.")
+        self.fault = fault
+        self.remedy = remedy
+
+    def __reduce__(self) -> tuple[type[NoStripError], tuple[str, str | None]]:
+        return type(self), (self.fault, self.remedy)
+
+    def with_remedy(self, remedy: str) -> NoStripError:
+        """The same fault, and what to do about it."""
+        return NoStripError(self.fault, remedy)
+
+
 class PanelError(CadpanelError, ValueError):
     """One named panel cannot be fitted or built.
 

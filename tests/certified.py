@@ -9,7 +9,7 @@ from cadpanel.brep.proof.certificate import certify
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
 from cadpanel.brep.step.file import write_step
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import folded_panel, moved
 
@@ -18,7 +18,7 @@ GAP = 0.25
 SEAMS = [ExpectedSeam(panels=(f"P{i}", f"P{i + 1}"), edges=("end 1", "end 0"), gap=GAP) for i in range(2)]
 
 
-def expected(shape: PanelShape) -> ExpectedPanel:
+def expected(shape: PanelShape | PolygonShape) -> ExpectedPanel:
     built = shape.straightened().shape
     kinds: list[PatchKind] = [
         "plane" if not isinstance(patch, ConePatch) else "cone" if patch.half_angle else "cylinder"

@@ -204,7 +204,6 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.steps": "tests/cli/test_fit.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
-    "cadpanel.cli.tables": "tests/cli/test_fit.py",
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.records.blanks": "tests/delivery/records/test_flat_parts.py",

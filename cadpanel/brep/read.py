@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import cast
 
 from cadpanel.brep.cutting.raw_panels import RawReference
-from cadpanel.brep.cutting.ways import REMEDIES
+from cadpanel.brep.cutting.remedies import other_ways
 from cadpanel.brep.isolation.client import work_guarded
-from cadpanel.errors import OutlineError, OverlapError
+from cadpanel.errors import CadpanelError, NoStripError, OutlineError, OverlapError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceSettings, file_named
@@ -28,22 +28,41 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
 
     Raises:
         ReferenceFileError: the file cannot be read, does not hold panels, or cannot be cut into them.
-        PanelError: one of the panels is none.
+        PanelError: one of the panels is none. Where the cut is at fault, two other ways are tried, and one that gives
+            panels is named.
         SettingsError: the path is no name of a file, or a setting does not fit the file.
     """
     path, how = file_named(path, "reference"), settings or ReferenceSettings()
-    raw = read_raw_panels(path, how)
     try:
-        reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
-    except OutlineError as error:
-        if how.way not in REMEDIES:
+        return _read(path, how)
+    except (OutlineError, NoStripError) as error:
+        remedy = _seen_to_help(path, how)
+        if remedy is None:
             raise
-        raise error.with_remedy(REMEDIES[how.way]) from error
+        raise error.with_remedy(remedy) from error
     except OverlapError as error:
         if how.way is None:
             raise
         raise error.of_a_cut() from error
+
+
+def _read(path: Path, how: ReferenceSettings) -> Reference:
+    raw = read_raw_panels(path, how)
+    reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how, origin=raw.origin)
+
+
+def _seen_to_help(path: Path, how: ReferenceSettings) -> str | None:
+    """Of other ways to cut, the first that gives panels; that none of them does; None where there is none to try."""
+    others = other_ways(how)
+    for other in others:
+        try:
+            _read(path, other.settings)
+        except CadpanelError:
+            continue
+        return f"{other.called} cuts it"
+    tried = [other.called for other in others]
+    return None if not tried else f"{' and '.join(tried)} {'does' if len(tried) == 1 else 'do'} not help"
 
 
 def read_raw_panels(path: str | Path, settings: ReferenceSettings | None = None) -> RawReference:

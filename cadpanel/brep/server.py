@@ -17,7 +17,9 @@ from cadpanel.brep.files.loading import load_model, load_reference
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
+from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
+from cadpanel.brep.proof.rebuilding import rebuild
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
@@ -64,6 +66,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),
     "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
+    "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
     "close": lambda _request, _: INSPECTOR.close(),
 }
 """What can be asked for."""

@@ -19,6 +19,8 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 # Deviation in mm that is worth a line of its own.
 _WORTH_TELLING = 0.05
+# Degrees between neighbours above which the break is seen.
+_KINK_SEEN = 3.0
 # Notes that are printed; all of them are in the report.
 _MOST_NOTES = 5
 DASH = "-"
@@ -105,6 +107,9 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     traded = _traded(report)
     if traded:
         out.print(Text(traded))
+    kinked = _kinked(report)
+    if kinked:
+        out.print(Text(kinked))
     print_certificate(report.certificate, "Certificate")
     notes = [f"Note: {note}" for note in report.reference.notes]
     notes += [f"Note on panel '{panel.name}': {note}" for panel in report.panels for note in panel.notes]
@@ -123,6 +128,18 @@ def _traded(report: ReportModel) -> str:
         return ""
     told = ", ".join(f"{prices[name]:.2f} mm for {_WORTH[name][0]}" for name in dear[:3])
     return f"What limits cost: RMS deviation would fall at first by about {told}."
+
+
+def _kinked(report: ReportModel) -> str:
+    """The largest kink and its seam, where people see it: light breaks there."""
+    worst = max(report.seams, key=lambda seam: seam.max_kink, default=None)
+    if worst is None or worst.max_kink <= _KINK_SEEN:
+        return ""
+    first, second = worst.panels
+    return (
+        f"The largest kink, {worst.max_kink:.1f} degrees, is between '{first}' and '{second}'; light shows kinks of "
+        f"more than {_KINK_SEEN:g}. --max-kink holds them below a limit."
+    )
 
 
 def _bends(report: ReportModel) -> str:

@@ -11,13 +11,14 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.parallel import Helper
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
+from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -57,6 +58,11 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             fitted=_fitted(panel),
             flat=ExpectedFlat(area=part.size.area, share=part.share, depth=depth, skin_pieces=part.skin_pieces),
             placed=contents.placed,
+            sheet=Sheet(
+                shape=recorded_shape(panel, depth),
+                thickness=contents.sheet.thickness,
+                skin_side=contents.sheet.skin_side,
+            ),
         )
         for panel, part in zip(contents.records, contents.parts, strict=True)
     ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.folder import REPORT
@@ -14,11 +15,12 @@ from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
+from cadpanel.delivery.records.measured_again import measured_faults, reading_again
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.step_proof import Proved, prove_steps
-from cadpanel.errors import DeliveryError
+from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -30,11 +32,13 @@ class Verification:
         report: its report, as it was read.
         certificate: what its STEP files show now.
         failures: one sentence for everything that does not hold, naming the panel or the seam.
+        unproved: what the report says that was not proved, in the words of its keys.
     """
 
     report: ReportModel
     certificate: CertificateModel
     failures: tuple[str, ...]
+    unproved: tuple[str, ...]
 
     @property
     def holds(self) -> bool:
@@ -42,22 +46,41 @@ class Verification:
         return not self.failures
 
 
-def verify(folder: str | Path) -> Verification:
+BY_REFERENCE = ("deviation", "Hausdorff distance", "drift", "turn and unevenness of seams")
+"""What only the reference can tell."""
+BY_A_FIT = ("what other methods reach", "what limits cost", "what the bend was taken from")
+"""What only another fit could tell."""
+
+
+def verify(folder: str | Path, reference: str | Path | None = None) -> Verification:
     """Read a delivery's files and hold them against its report, and the report against itself.
+
+    Args:
+        folder: that `deliver` wrote.
+        reference: the file that the panels approximate, to measure deviation, drift and turn of seams again; without
+            it they are listed as not proved.
 
     Raises:
         DeliveryError: the folder or one of its files is missing or cannot be read; one sentence says which.
+        ReferenceFileError: the reference cannot be read as the report says that it was.
     """
     place = Path(folder)
     if not place.is_dir():
         raise DeliveryError(f"'{folder}' is not a folder: name one that 'cadpanel fit' wrote.")
     _demand_files(place, (REPORT,))
     report = read_report(place / REPORT)
-    outputs = chosen_outputs(report.settings.outputs, OUTPUTS)
+    try:
+        outputs, contents = chosen_outputs(report.settings.outputs, OUTPUTS), _contents(report)
+    except SettingsError as error:
+        raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
-    certificate = prove(place, _contents(report), outputs).certificate
+    certificate = prove(place, contents, outputs).certificate
     failures = (*certificate.failures, *check_report(report, certificate))
-    return Verification(report=report, certificate=certificate, failures=failures)
+    if reference is None:
+        return Verification(report=report, certificate=certificate, failures=failures, unproved=BY_REFERENCE + BY_A_FIT)
+    file = Path(reference)
+    again = measured_faults(report, read_reference(file, reading_again(report.reference, file)))
+    return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=BY_A_FIT)
 
 
 def _demand_files(place: Path, names: Sequence[str]) -> None:

@@ -8,6 +8,14 @@ import pytest
 from cadpanel.cli.interrupt import first_interrupt_ends
 
 
+@pytest.fixture(autouse=True)
+def as_in_a_terminal():
+    """What is started in the background by a shell ignores interrupts, and leaves it so to whom it starts."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def test_once_somebody_listens_the_first_interrupt_is_heard_and_the_second_stops():
     with first_interrupt_ends() as interrupt:
         assert not interrupt.heard()

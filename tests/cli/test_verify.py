@@ -21,6 +21,20 @@ def test_an_untouched_delivery_holds(run: Run, delivered: Path) -> None:
     assert run("verify", delivered, "--quiet").out == ""
 
 
+def test_what_is_not_proved_is_listed_and_the_reference_proves_deviation_and_drift(
+    run: Run, delivered: Path, delivery: Path, lip_step: Path
+) -> None:
+    assert "Not proved: deviation, Hausdorff distance, drift" in run("verify", delivered).out
+    answer = run("verify", delivered, "--reference", lip_step)
+    assert answer.code == 0
+    assert "Not proved: what other methods reach" in answer.out
+    edit(delivery, put("panels", 1, "hausdorff", value=lambda v: v - 0.01))
+    assert run("verify", delivery).code == 0
+    answer = run("verify", delivery, "--reference", lip_step)
+    assert answer.code == 1
+    assert "Panel 'N-02': the report's hausdorff is" in answer.err
+
+
 def edit(folder: Path, change: Callable[[dict[str, Any]], None]) -> None:
     path = folder / "report.json"
     report = json.loads(path.read_text(encoding="utf-8"))
@@ -85,6 +99,18 @@ def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (put("seams", 0, "step", value=9.0), "max_step"),
         (put("settings", "seam_turn", value=0.01), "degrees for the turn of seams, where 0.01 degrees are allowed"),
         (put("certificate", "solids", value=4), "solids = 4"),
+        (put("certificate", "overlap", value=1.0), "overlap = 1"),
+        (put("certificate", "outputs", "flats", "drawings", value=7.0), "flats.drawings = 7"),
+        (put("features", value={"plane-cone-plane": 4}), "counts {'plane-cone-plane': 4} panels by feature"),
+        (put("seams", 0, "recut", value=9.0), "corners lie up to 9 mm from the joint's plane"),
+        (put("seams", 0, "plane", "normal", 0, value=0.1), "is not of length 1"),
+        (put("panels", 0, "patches", 0, "normal", value=[0.0, 0.0, 0.0]), "is not of length 1"),
+        (put("panels", 0, "area", value=lambda v: v * 10.0), "Panel 'N-01': the report's area is"),
+        (put("panels", 0, "moved", value=1.0), "Panel 'N-01': the report says that a slender cone was straightened"),
+        (put("summary", "least_radius", value=lambda v: v + 1.0), "The summary's least_radius is"),
+        (put("summary", "max_unevenness", value=lambda v: v + 1.0), "max_unevenness"),
+        (put("settings", "k_factor", value=2.0), "holds a setting that is none"),
+        (put("settings", "method", value="magic"), "settings.method"),
         (put("certificate", "valid", value=False), "valid"),
         (put("certificate", "max_seam_gap", value=0.1), "max_seam_gap"),
         (put("certificate", "failures", value=["Panel 'N-02' is bent."]), "Panel 'N-02' is bent."),

@@ -21,14 +21,13 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
+from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.run import fit
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape
 from fixtures.arrays import reference
 from tests.delivered import STRAIGHT, fitted, fitted_alone
 from tests.shapes import random_panel
-
-OF_PANELS = ("rms_deviation", "max_deviation", "hausdorff", "drift", "drift_along", "drift_across", "lengths", "shapes")
 
 
 # ------------------------------------------------------------------------------------------------------------- patches
@@ -101,22 +100,10 @@ def test_a_delivery_with_slender_cones_holds_its_proof(tmp_path: Path) -> None:
     curved = [patch for patch in result.shapes[1].patches if isinstance(patch, ConePatch)]
     assert curved
     lone = replace(result.reference, panels=result.reference.panels[:1], seams=())
-    measures = replace(
-        result.measures,
-        corner_gaps=(),
-        seam_panels=np.zeros((0, 2), dtype=np.intp),
-        seam_gap=np.zeros(0),
-        seam_width=np.zeros(0),
-        seam_step=np.zeros(0),
-        seam_shift=np.zeros(0),
-        kink=np.zeros(0),
-        uneven=np.zeros(0),
-        overall_rms=float(result.measures.rms_deviation[0]),
-        **{name: getattr(result.measures, name)[:1] for name in OF_PANELS},
-    )
     chain = result.shapes[0]
     assert isinstance(chain, PanelShape)
-    one = replace(result, reference=lone, shapes=(slender(chain),), measures=measures)
+    shapes = (slender(chain),)
+    one = replace(result, reference=lone, shapes=shapes, measures=measure(shapes, lone))
     report = deliver(one, tmp_path / "out")
     assert report.certificate.face_kinds["cylinder"] == 2
     assert report.panels[0].notes

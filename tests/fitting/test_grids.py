@@ -19,6 +19,7 @@ from cadpanel.geometry.sheet_checks import check_buildable
 from tests.fitted_grids import CASES, asked, fitted, gable, read, reference
 from tests.grids import dome, write_grid, write_mixed_row
 from tests.known_panels import moved, renumbered
+from tests.thorough import thorough
 
 # Millimetres, on panels of 1.5 m.
 SAME = 1e-3
@@ -99,6 +100,7 @@ def test_four_plates_of_a_grid_meet_in_one_point():
         assert np.linalg.norm(one[:, None] - other, axis=-1).min() <= 2.0
 
 
+@thorough
 def test_a_tolerance_that_no_grid_of_plates_can_hold_is_missed_and_told():
     """The smallest case that fails: a corner may not move."""
     how = FitSettings(

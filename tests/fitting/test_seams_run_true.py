@@ -14,6 +14,7 @@ from fixtures.arrays import reference
 from fixtures.lips import Lip
 from tests.instances import random_polygon
 from tests.known_panels import alone
+from tests.thorough import thorough
 
 LENGTH = 18_000.0
 ANY_TURN = {"seam_turn": 90.0, "evenness": 0.5, "drift_along": 0.05}
@@ -96,6 +97,7 @@ def test_a_kink_is_limited_where_it_is_asked_for() -> None:
     assert flat.tolerance_met
 
 
+@thorough
 def test_rulings_that_cannot_turn_give_way_with_the_gaps_and_not_drift() -> None:
     """Cylinders between sides that are not parallel: their seams must turn, and their corners stay within bounds."""
     tapering = Lip(panels=4, lower=(650.0, 350.0), upper=(800.0, 400.0))

@@ -12,6 +12,7 @@ from cadpanel.solver.stop import Stop
 from fixtures.arrays import reference
 from fixtures.lips import Lip
 from tests.known_panels import moved
+from tests.thorough import thorough
 
 # What rounding leaves, mm.
 SAME = 1e-6
@@ -58,7 +59,7 @@ def beside(references: tuple[cp.Reference, ...]) -> cp.Reference:
         ((GENTLE, TWISTED), {}, (True, True)),
         ((GENTLE, SMALL, ALONE), {}, (True, True, True)),
         ((GENTLE, SMALL, ALONE), MILLIMETRE, (True, True, True)),
-        ((TWISTED, GENTLE, ALONE), {"tilt": "fixed", **MILLIMETRE}, (True, False, True)),
+        pytest.param((TWISTED, GENTLE, ALONE), {"tilt": "fixed", **MILLIMETRE}, (True, False, True), marks=thorough),
         ((GENTLE, SMALL), {"method": "two_stage", **MILLIMETRE}, (False, False)),
     ],
 )

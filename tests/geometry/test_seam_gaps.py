@@ -6,10 +6,11 @@ import pytest
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
 from tests.dense_seam_gap import FINE, QUICK, dense_seam_gap
 from tests.seams import KINDS, chains, good
+from tests.thorough import cases
 
 SEED = 20
-# Of each of the fifteen kinds: ten thousand seams together.
-SEAMS = 667
+# Of each of the fifteen kinds: ten thousand seams together in a thorough run.
+SEAMS = cases(60, 667)
 CLOSE = 1e-3
 # What the dense measure itself may be off: mm, and radians.
 ROUNDING = np.array([1e-7, 1e-6, 1e-6, 1e-6])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from tests.mutation.mutants import mutants_of
@@ -21,11 +22,16 @@ class Equivalent:
 
     def applies(self, root: Path) -> bool:
         """Whether the change can still be made."""
-        file = root / self.path
-        if not file.is_file():
-            return False
-        text = file.read_text(encoding="utf-8")
-        return any(one.lines(text) == (self.before, self.after) for one in mutants_of(self.path, text))
+        return (self.before, self.after) in _changes(root / self.path)
+
+
+@cache
+def _changes(file: Path) -> frozenset[tuple[str, str]]:
+    """Every change that can be made to a file: its line before and after; none to a file that is not there."""
+    if not file.is_file():
+        return frozenset()
+    text = file.read_text(encoding="utf-8")
+    return frozenset(one.lines(text) for one in mutants_of(file.name, text))
 
 
 def read_equivalents(root: Path) -> list[Equivalent]:

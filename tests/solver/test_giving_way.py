@@ -10,6 +10,7 @@ from cadpanel.solver.hold import Hold
 from cadpanel.solver.interior_point import interior_point
 from cadpanel.solver.stop import Stop
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points, side_by_side
+from tests.thorough import cases
 
 
 def between(first: float, second: float, **second_is: bool) -> HeldTargets:
@@ -194,7 +195,7 @@ def test_what_must_hold_may_cost_whatever_it_takes_and_the_rest_as_much_again(mo
         assert left <= 0.1 + 1e-6
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(cases(1, 3)))
 def test_how_far_distances_are_exceeded_does_not_hang_on_what_was_asked_for(seed):
     """What holds narrow ones holds wide ones, and what holds none is exceeded by as much."""
     ends = float(np.random.default_rng(seed).uniform(3.0, 8.0))

@@ -19,8 +19,7 @@ from cadpanel.brep.skin.belt import find_belt
 from cadpanel.brep.skin.face_cleanup import SkinFace, measure
 from cadpanel.brep.skin.iso_strip import find_lanes
 from cadpanel.brep.skin.ring import find_ring
-from cadpanel.brep.skin.strip import NoStripError
-from cadpanel.errors import CadpanelError, ReferenceFileError
+from cadpanel.errors import CadpanelError, NoStripError, ReferenceFileError
 from cadpanel.reference.settings import Seams
 
 

@@ -21,7 +21,6 @@ from cadpanel.brep.cutting.grid_counts import counts_within
 from cadpanel.brep.cutting.open_closed_faces import opened
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.skin.adjacency import Surface
-from cadpanel.brep.skin.strip import CUT_OTHERWISE
 from cadpanel.brep.splitting.splitter import UncutError
 from cadpanel.errors import CadpanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
@@ -29,16 +28,6 @@ from cadpanel.reference.texts import AUTO
 
 DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
 """What to do about a curve that does not cut."""
-
-
-REMEDIES = {
-    "divide": f"{CUT_OTHERWISE}, or divide it into another number of panels",
-    "panel_length": f"{CUT_OTHERWISE}, or allow panels of another length",
-    "panel_size": "allow panels of another size, or give a grid",
-    "grid": "give a grid of other numbers, 2 or more each way, 3 or more round a point, its lines through every hole",
-    "stations": f"{CUT_OTHERWISE}, or give other stations",
-}
-"""What to do about a panel without an outline, by the way in which it was cut, where that is at fault."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

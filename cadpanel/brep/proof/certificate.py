@@ -19,7 +19,8 @@ from cadpanel.brep.proof.clearances import Clear, clearances
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
 from cadpanel.brep.proof.overlaps import unparted
-from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files
+from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, rebuild
+from cadpanel.brep.proof.rebuilt import unlike_rebuilt
 from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.geometry.kink import edge_angles
@@ -125,6 +126,8 @@ def certify(
             _check_same_place(panel.name, solid_of[panel.name], skin_of[panel.name], failures)
             if panel.flat is not None:
                 flats.append(FlatFacts(panel.flat, panel.far_planes, solid_of[panel.name], skin_of[panel.name]))
+    sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None}
+    failures += unlike_rebuilt([*sheets], rebuild(panels_step, [*sheets.values()], helper), solid_of, skin_of)
     flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)
     clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)

@@ -9,6 +9,8 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
+from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.sheet_checks import SkinSide
 
 PatchKind = Literal["plane", "cone", "cylinder"]
 
@@ -27,6 +29,15 @@ class Fitted:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Sheet:
+    """What a sheet is built from: the panel, its thickness in mm, and the side of the sheet on which the skin is."""
+
+    shape: Panel
+    thickness: float
+    skin_side: SkinSide
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedPanel:
     """What a panel in the files must be.
 
@@ -39,6 +50,7 @@ class ExpectedPanel:
         fitted: the panel before it was cut back; None where it was not.
         flat: what its flat pattern says; None to leave it alone.
         placed: where the origin of its coordinates lies in both files, mm.
+        sheet: what both files hold of it, to be built anew; None to leave that alone.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """
@@ -51,6 +63,7 @@ class ExpectedPanel:
     fitted: Fitted | None = None
     flat: ExpectedFlat | None = None
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    sheet: Sheet | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

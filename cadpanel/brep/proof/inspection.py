@@ -24,6 +24,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from cadpanel.arrays import Array
 from cadpanel.brep.building.sheet import volume_of
 from cadpanel.brep.kernel.shapes import edges_of, faces_of, packed, shapes_of, unpacked
+from cadpanel.brep.proof.boundary import EDGE_POINTS, Boundary
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.brep.step.file import OpenStep, open_step
 from cadpanel.geometry.curve_pieces import CurvePieces
@@ -98,6 +99,7 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
     known = np.array([curve is not None for curve in curves], dtype=bool)
     pieces = [curve for curve in curves if curve is not None]
     solids = len(shapes_of(shape, TopAbs_SOLID))
+    boundary = _boundary(shape, edges, [numbers for _, numbers in surfaces])
     return ShapeFacts(
         name=name,
         placed=placed,
@@ -110,13 +112,40 @@ def inspect(name: str, shape: TopoDS_Shape) -> ShapeFacts:
         areas=np.array([_area(face) for face in faces], dtype=np.float64),
         straight_edges=np.array([ends for ends, _ in straight]).reshape(-1, 2, 3),
         edge_surfaces=np.array([pair for _, pair in straight]).reshape(-1, 2, 9),
-        vertices=_vertices(shape),
+        vertices=boundary.vertices,
         pieces=_pieces([curve for curve, _ in pieces]),
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
         piece_faces=lies_on[known],
         other_edges=lies_on[~known],
-        surfaces=np.array([numbers or [np.nan] * 9 for _, numbers in surfaces]).reshape(-1, 9),
+        surfaces=boundary.surfaces,
+        boundary=boundary,
     )
+
+
+def boundary_of(shape: TopoDS_Shape) -> Boundary:
+    """What bounds a shape, 1 ms a panel."""
+    faces = faces_of(shape)
+    return _boundary(shape, _edges_with_faces(faces), [_surface(face)[1] for face in faces])
+
+
+def _boundary(
+    shape: TopoDS_Shape, edges: Sequence[tuple[TopoDS_Edge, list[int]]], surfaces: Sequence[list[float] | None]
+) -> Boundary:
+    return Boundary(
+        vertices=_vertices(shape),
+        edges=np.array([_points(edge) for edge, _ in edges]).reshape(-1, EDGE_POINTS, 3),
+        edge_faces=np.array([(*of, -1)[:2] for _, of in edges], dtype=np.intp).reshape(-1, 2),
+        surfaces=np.array([numbers or [np.nan] * 9 for numbers in surfaces]).reshape(-1, 9),
+    )
+
+
+def _points(edge: TopoDS_Edge) -> list[list[float]]:
+    """Points of an edge at equal steps of its parameter; a degenerate one stays in its vertex."""
+    if BRep_Tool.Degenerated_s(edge):
+        return [_xyz(BRep_Tool.Pnt_s(TopExp.FirstVertex_s(edge)))] * EDGE_POINTS
+    curve = BRepAdaptor_Curve(edge)
+    parameters = np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
+    return [_xyz(curve.Value(parameter)) for parameter in parameters.tolist()]
 
 
 def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:

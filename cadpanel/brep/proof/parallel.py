@@ -19,8 +19,10 @@ from typing import cast
 
 from cadpanel.brep.isolation.client import READER, Interpreter
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
+from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.proof.shape_facts import ShapeFacts
-from cadpanel.errors import DeliveryError
+from cadpanel.errors import DeliveryError, PanelError
 
 WORTHWHILE_BYTES = 4_000_000
 """Size of a file of skins from which reading takes longer than starting an interpreter with the kernel, about 2 s."""
@@ -80,6 +82,13 @@ class _File:
         self.ask("close")
         return found
 
+    def rebuilt(self, sheets: Sequence[Sheet]) -> list[Rebuilt | PanelError]:
+        """What the kernel makes of sheets, some at a time, so that none has to wait for an answer for long."""
+        found: list[Rebuilt | PanelError] = []
+        for first in range(0, len(sheets), CHUNK):
+            found += cast(list[Rebuilt | PanelError], self.ask("rebuild", sheets[first : first + CHUNK]))
+        return found
+
     def all_facts(self) -> list[ShapeFacts]:
         """Read it and inspect all of it."""
         found = self.facts(range(self.open()))
@@ -104,6 +113,10 @@ class Helper:
     def join(self, panels: Path, work: _Work) -> Future[None]:
         """Let it take chunks of panels from `work` after that, until none comes any more."""
         return self._clerk.submit(work.help, _File(self._interpreter, panels))
+
+    def rebuild(self, panels: Path, sheets: Sequence[Sheet]) -> Future[list[Rebuilt | PanelError]]:
+        """Let it build sheets of the file of panels anew."""
+        return self._clerk.submit(_File(self._interpreter, panels).rebuilt, sheets)
 
     def end(self) -> None:
         """End it at once."""
@@ -149,6 +162,22 @@ def inspect_files(
         if started is None:
             return _File(READER, panels).all_facts(), _File(READER, skins).all_facts()
         return _inspect_together(panels, skins, started)
+
+
+def rebuild(
+    panels_step: str | os.PathLike[str], sheets: Sequence[Sheet], helper: Helper | None = None
+) -> list[Rebuilt | PanelError]:
+    """The sheets of a file of panels, built anew; half of them by a helper, if there is one.
+
+    Raises:
+        DeliveryError: if the kernel crashes over one of them or does not end.
+    """
+    file, path = _File(READER, Path(panels_step)), Path(panels_step)
+    if helper is None:
+        return file.rebuilt(sheets)
+    half = len(sheets) // 2
+    others = helper.rebuild(path, sheets[half:])
+    return [*file.rebuilt(sheets[:half]), *others.result()]
 
 
 def common_volumes(panels_step: str | os.PathLike[str], pairs: Sequence[tuple[int, int]]) -> list[float]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.brep.proof.boundary import Boundary
 from cadpanel.geometry.curve_pieces import BoolArray, CurvePieces
 
 FACE_KINDS = ("plane", "cone", "cylinder", "other")
@@ -38,6 +39,7 @@ class ShapeFacts:
         piece_faces: (e, 2) the faces on which they lie; -1 in the place of a second one that is not there.
         other_edges: (o, 2) the same for the edges that are neither.
         surfaces: (f, 9) the surface of each face, as in `edge_surfaces`; not numbers where it is of another kind.
+        boundary: all that bounds it.
     """
 
     name: str
@@ -57,6 +59,7 @@ class ShapeFacts:
     piece_faces: IntArray
     other_edges: IntArray
     surfaces: Array
+    boundary: Boundary
 
     @property
     def border(self) -> BoolArray:

@@ -11,20 +11,12 @@ from cadpanel.arrays import Array
 from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.skin.cut_planes import Cuts
 from cadpanel.brep.skin.strip_direction import turning_angles, way_along
-from cadpanel.errors import OutlineError, ReferenceFileError
+from cadpanel.errors import NoStripError, OutlineError
 from cadpanel.geometry.order import goes_backwards
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.vectors import cross, dot, norm, unit
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import Side, find_outline
-
-CUT_OTHERWISE = "cut it with a grid, a network of curves or a mesh"
-"""What to do about a surface that is no strip."""
-
-
-class NoStripError(ReferenceFileError):
-    """A surface without two long edges."""
-
 
 SIDES = 4
 # A chord between the long edges shorter than this part of the strip's girth gives a plane no direction.
@@ -132,15 +124,13 @@ def find_strip(surface: Surface, source: str, tolerance: float) -> Strip:
     try:
         sides = find_outline(raw, source, tolerance).sides
     except OutlineError as error:
-        fewer = "choose fewer faces, or " if len(surface.faces) > 1 else ""
         raise NoStripError(
             f"The surface of {surface.numbers} of '{source}' is no strip that could be divided along its length "
-            f"({error.fault}): {fewer}{CUT_OTHERWISE}."
+            f"({error.fault})"
         ) from error
     if len(sides) != SIDES:
         raise NoStripError(
-            f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}: "
-            f"{CUT_OTHERWISE}."
+            f"The surface of {surface.numbers} of '{source}' has {len(sides)} sides where a strip has {SIDES}"
         )
     lengths, turned = (
         [sum(map(measure, pair)) for pair in (sides[0::2], sides[1::2])] for measure in (_length, _turning)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Positive, Record, Vector
+from cadpanel.delivery.records.jsonfile import Direction, NonNegative, NonNegativeCount, Positive, Record
 
 Pair = tuple[float, float]
 
@@ -55,5 +55,5 @@ class BendModel(Record):
 class CutModel(Record):
     """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
 
-    normal: Vector
+    normal: Direction
     offset: float

@@ -6,7 +6,8 @@ summary is the worst of its panels and seams can.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,15 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
+from cadpanel.delivery.records.shape_checks import shape_faults
+from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
 from cadpanel.features.catalogue import AUTO
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.shape import edge_corners
+from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.terms.limits.catalogue import LIMITS
+from cadpanel.terms.limits.flange_width import FlangeWidth
+from cadpanel.terms.limits.min_radius import MinRadius
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
@@ -36,14 +43,20 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
         certificate: what the files beside it show now.
     """
     panels = {panel.name: panel for panel in report.panels}
+    sheet = report.settings.sheet()
+    depth = sheet_depth(sheet.thickness, sheet.skin_side)
     failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
+    failures += [fault for panel in report.panels for fault in shape_faults(panel, recorded_shape(panel, depth))]
+    counted = Counter(panel.feature for panel in report.panels)
+    if report.features != counted:
+        failures.append(f"The report counts {report.features} panels by feature, its list has {dict(counted)}.")
     failures += [
         f"Panel '{panel.name}': the report calls it {panel.feature}, {report.settings.feature} was asked for."
         for panel in report.panels
         if panel.feature != report.settings.feature != AUTO
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
-    failures += _summary_faults(report)
+    failures += _summary_faults(report, depth)
     failures += _certificate_faults(report.certificate, certificate)
     return tuple(failures)
 
@@ -100,6 +113,14 @@ def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str
     except ValueError as error:
         yield f"{name}: {error}."
         return
+    if seam.plane is not None and seam.recut is not None:
+        normal, offset = np.array(seam.plane.normal), seam.plane.offset
+        farthest = max(float(np.abs(corners @ normal - offset).max()) for corners in (first, second))
+        if not abs(farthest - seam.recut) <= SAME_LENGTH:
+            yield (
+                f"{name}: the report says that corners lie up to {seam.recut:.6g} mm from the joint's plane, they lie "
+                f"{farthest:.6g} mm from it."
+            )
     if len(gaps) == 2:
         first, second = first[[0, -1]], second[[0, -1]]
     if not first.shape == second.shape == (len(gaps), 3):
@@ -119,7 +140,18 @@ def _fitted(panel: PanelModel) -> Array:
     return np.array(panel.corners if panel.fitted is None else panel.fitted.corners)
 
 
-def _summary_faults(report: ReportModel) -> Iterator[str]:
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """Panels without the reference."""
+
+    shapes: Sequence[Panel]
+
+
+OF_SHAPES = (MinRadius(), FlangeWidth())
+"""The limits whose measure is seen of panels alone."""
+
+
+def _summary_faults(report: ReportModel, depth: float) -> Iterator[str]:
     summary = report.summary
     worst: dict[str, float] = {
         key: max((of(seam) for seam in report.seams), default=0.0) for key, of in _OF_SEAMS.items()
@@ -129,6 +161,13 @@ def _summary_faults(report: ReportModel) -> Iterator[str]:
         stated = float(getattr(summary, key))
         if not abs(stated - value) <= SAME_LENGTH:
             yield f"The summary's {key} is {stated:.6g}, the worst in the list is {value:.6g}."
+    shapes = [fitted_shape(panel, depth) for panel in report.panels]
+    moved = max(panel.moved for panel in report.panels)
+    for limit in OF_SHAPES:
+        least, of_list = getattr(summary, limit.rows[-1].key), float(limit.measure(Alone(shapes)).min())
+        known = np.isfinite(of_list)
+        if (least is not None) != known or (known and not abs(least - of_list) <= ON_PATCH + moved):
+            yield f"The summary's {limit.rows[-1].key} is {least}, the panels in the list have {of_list:.6g}."
     yield from _tolerance_faults(report, summary)
     yield from _deviation_faults(report, summary)
 
@@ -140,6 +179,7 @@ _OF_SEAMS: dict[str, Callable[[SeamModel], float]] = {
     "max_step": lambda seam: seam.step,
     "max_shift": lambda seam: seam.shift,
     "max_kink": lambda seam: seam.max_kink,
+    "max_unevenness": lambda seam: seam.unevenness,
 }
 _OF_PANELS: dict[str, Callable[[PanelModel], float]] = {
     "max_deviation": lambda panel: panel.max_deviation,
@@ -234,5 +274,11 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         was, now = (None if one.clear is None else getattr(one.clear, key) for one in (stated, found))
         if (was is None) != (now is None) or (was is not None and not abs(was - now) <= SAME_LENGTH):
             yield f"The certificate in the report says clear.{key} = {was}, the files show {now}."
-    if stated.overlap is not None and found.overlap is not None and not found.overlap <= stated.overlap + SAME_VOLUME:
-        yield f"The certificate in the report says overlap = {stated.overlap:.6g}, the files show {found.overlap:.6g}."
+    shared, now = stated.overlap, found.overlap
+    if shared is not None and now is not None and not abs(shared - now) <= SAME_VOLUME:
+        yield f"The certificate in the report says overlap = {shared:.6g}, the files show {now:.6g}."
+    for output, numbers in found.outputs.items():
+        for key, number in numbers.items():
+            told = stated.outputs.get(output, {}).get(key, np.nan)
+            if not abs(told - number) <= SAME_LENGTH:
+                yield f"The certificate in the report says {output}.{key} = {told:.6g}, the files show {number:.6g}."

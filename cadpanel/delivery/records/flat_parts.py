@@ -11,14 +11,14 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.file_names import file_names
 from cadpanel.delivery.records.blanks import BendModel, BlankModel, Pair
-from cadpanel.delivery.records.from_shape import patch_models
-from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
+from cadpanel.delivery.records.from_shape import radius_ranges
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.flat_curves import joined
 from cadpanel.geometry.flat_sizes import FlatSize, flat_sizes
 from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.sheet_checks import other_face
 from cadpanel.geometry.smallest_rectangle import Rectangle
 from cadpanel.geometry.unroll import FlatBend, FlatPattern, neutral_offset, unroll_all
@@ -109,31 +109,33 @@ def _bends(
 ) -> tuple[BendModel, ...]:
     if not pattern.bends:
         return ()
-    faces = [patch_models(face) for face in (shape, other_face(shape, sheet.thickness, sheet.skin_side))]
+    faces = [radius_ranges(face) for face in (shape, other_face(shape, sheet.thickness, sheet.skin_side))]
     angles = _end_angles(shape)
     return tuple(
-        _bend(bend, [face[bend.patch] for face in faces], size, angles[:, bend.patch], shop.facet_height)
+        _bend(bend, shape.patches[bend.patch], [face[bend.patch] for face in faces], size, angles, shop.facet_height)
         for bend in pattern.bends
     )
 
 
-def _bend(bend: FlatBend, faces: Sequence[PatchModel], size: FlatSize, angles: Array, facet_height: float) -> BendModel:
-    rounds = [face for face in faces if isinstance(face, ConePatchModel | CylinderPatchModel)]
-    inner = min(rounds, key=lambda face: face.radius_max)
+def _bend(
+    bend: FlatBend, patch: Patch, faces: Sequence[Pair | None], size: FlatSize, angles: Array, facet_height: float
+) -> BendModel:
+    """A bend as the inner one of the sheet's two faces has it; `faces` are their radii there."""
+    inner = min((radii for radii in faces if radii is not None), key=lambda radii: radii[1])
     first, last = bend.at_ends
     sweep = abs(bend.sweep)
-    angles = angles * np.sign(bend.sweep)
+    angles = angles[:, bend.patch] * np.sign(bend.sweep)
     # The edge turns by nearly as much as the sheet does: whole turns are known from there.
     turns = 2.0 * math.pi * np.round((sweep - angles) / (2.0 * math.pi))
     return BendModel(
         patch=bend.patch,
         direction="down" if bend.sweep > 0.0 else "up",
-        radius=(inner.radius_min, inner.radius_max),
-        half_angle=inner.half_angle if isinstance(inner, ConePatchModel) else 0.0,
+        radius=inner,
+        half_angle=math.degrees(abs(patch.half_angle)) if isinstance(patch, ConePatch) else 0.0,
         sweep=math.degrees(sweep),
         lengths=(size.pieces[first], size.pieces[last]),
         angles=(math.degrees(angles[0] + turns[0]), math.degrees(angles[1] + turns[1])),
-        hits=press_hits(inner.radius_max, sweep, facet_height),
+        hits=press_hits(inner[1], sweep, facet_height),
     )
 
 

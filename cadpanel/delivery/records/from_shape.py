@@ -8,7 +8,7 @@ from functools import singledispatch
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.records.blanks import CutModel
+from cadpanel.delivery.records.blanks import CutModel, Pair
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
 from cadpanel.delivery.records.report import FittedModel
@@ -43,6 +43,23 @@ def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
         else:
             models.append(PlanePatchModel(normal=vector(shape.normals[index]), point=vector(corners[0, index])))
     return tuple(models)
+
+
+@singledispatch
+def radius_ranges(shape: Panel) -> tuple[Pair | None, ...]:
+    """Smallest and largest distance of each patch from its axis, mm; None where it is flat, as all others are."""
+    return (None,) * len(patch_models(shape))
+
+
+@radius_ranges.register
+def _of_round_patches(shape: PanelShape) -> tuple[Pair | None, ...]:
+    frames = [
+        axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+        if isinstance(patch, ConePatch)
+        else None
+        for index, patch in enumerate(shape.patches)
+    ]
+    return tuple(None if frame is None else _radii(shape, frame) for frame in frames)
 
 
 def fitted_model(shape: Panel) -> FittedModel:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
 
@@ -15,6 +16,22 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
 Vector = tuple[float, float, float]
+
+
+def _is_unit(vector: Vector) -> Vector:
+    """Refuse what has not the length 1.
+
+    Raises:
+        ValueError: saying so.
+    """
+    if not abs(math.hypot(*vector) - 1.0) <= UNIT:
+        raise ValueError(f"the direction {list(vector)} is not of length 1")
+    return vector
+
+
+UNIT = 1e-9
+"""By how much the length of a direction may differ from 1."""
+Direction = Annotated[Vector, AfterValidator(_is_unit)]
 
 
 class Record(BaseModel):

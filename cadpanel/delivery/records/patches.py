@@ -6,14 +6,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cadpanel.delivery.records.jsonfile import NonNegative, Record, Vector
+from cadpanel.delivery.records.jsonfile import Direction, NonNegative, Record, Vector
 
 
 class PlanePatchModel(Record):
     """A flat patch: its outward unit normal and a point on it, mm."""
 
     kind: Literal["plane"] = "plane"
-    normal: Vector
+    normal: Direction
     point: Vector
 
 
@@ -31,7 +31,7 @@ class ConePatchModel(Record):
 
     kind: Literal["cone"] = "cone"
     apex: Vector
-    axis: Vector
+    axis: Direction
     half_angle: Annotated[float, Field(gt=0.0, lt=90.0)]
     radius_min: NonNegative
     radius_max: NonNegative
@@ -50,7 +50,7 @@ class CylinderPatchModel(Record):
     """
 
     kind: Literal["cylinder"] = "cylinder"
-    axis: Vector
+    axis: Direction
     axis_point: Vector
     radius_min: NonNegative
     radius_max: NonNegative

@@ -13,7 +13,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.bends.asked import Blend
-from cadpanel.fitting.settings import FitSettings, Weights
+from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -97,7 +97,7 @@ class SettingsModel(ComparisonSettingsModel):
     feature: str
     composition: tuple[str, ...] | None = None
     max_deviation: Annotated[float, Field(gt=0.0)] | None = None
-    method: str
+    method: Method
     thickness: NonNegative
     joint: NonNegative | None = None
     skin_side: Literal["outer", "inner"]

@@ -67,6 +67,24 @@ def recorded_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape
     )
 
 
+def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
+    """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
+
+    Args:
+        panel: the record.
+        depth: where the sheet's other face lies, mm along the skin's normal.
+
+    Raises:
+        DeliveryError: the record does not say how the panel is cut, or what part it is.
+    """
+    if panel.fitted is None:
+        return recorded_shape(panel, depth)
+    moves = np.array(panel.other_face) - np.array(panel.corners)
+    other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
+    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other}
+    return recorded_shape(panel.model_copy(update=uncut), depth)
+
+
 def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:
     """(2,) by how much the walls lean at the first and the last ruling; at a round patch they are square."""
     flat = [not isinstance(patches[place], ConePatch) for place in (0, -1)]

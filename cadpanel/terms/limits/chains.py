@@ -38,10 +38,15 @@ class Chains:
     radius: Array
     half_angle: Array
 
-    @property
-    def heights(self) -> Array:
-        """(n, 2, k + 1) how far along its ruling, from the ruling's point, each corner lies, mm."""
-        return dot(self.corners - self.points[:, None], self.directions[:, None])
+    def heights(self, patch: int) -> Array:
+        """(n, 2, 2) how far up their generatrices a curved patch's corners lie, by end and ruling, mm.
+
+        From the level of the first ruling's point: wherever the second one has its own.
+        """
+        half_angle = self.half_angle[:, patch, None]
+        axis = np.cos(half_angle) * self.directions[:, patch] - np.sin(half_angle) * self.normals[:, patch]
+        beyond = self.corners[:, :, patch : patch + 2] - self.points[:, None, None, patch]
+        return np.asarray(dot(beyond, axis[:, None, None]) / np.cos(half_angle)[..., None])
 
     @property
     def widths(self) -> Array:

@@ -11,7 +11,7 @@ from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.terms.limits.chains import chains_of
-from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
 
@@ -37,7 +37,7 @@ class FlangeWidth(Limit):
             if any(group.feature.curved) and not all(group.feature.curved)
         ]
 
-    def measure(self, measured: Measured) -> Array:
+    def measure(self, measured: Shapes) -> Array:
         """See `Limit.measure`."""
         least = np.full(len(measured.shapes), np.inf)
         for chains in chains_of(measured.shapes):

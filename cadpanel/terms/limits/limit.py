@@ -66,13 +66,17 @@ class Panels(Protocol):
         ...
 
 
-class Measured(Protocol):
-    """What a limit sees of panels that are measured; `fitting.measures.fit.Measures` is such a thing."""
+class Shapes(Protocol):
+    """What a limit sees that hangs on the panels alone."""
 
     @property
     def shapes(self) -> Sequence[Panel]:
         """The panels themselves, mm."""
         ...
+
+
+class Measured(Shapes, Protocol):
+    """What a limit sees of panels that are measured; `fitting.measures.fit.Measures` is such a thing."""
 
     @property
     def lengths(self) -> Array:

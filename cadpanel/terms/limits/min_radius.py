@@ -19,7 +19,7 @@ from cadpanel.features.rulings import PanelFeature, Points, Walk
 from cadpanel.geometry.frames import point_velocity
 from cadpanel.geometry.vectors import dot
 from cadpanel.terms.limits.chains import chains_of
-from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
 
@@ -46,13 +46,13 @@ class MinRadius(Limit):
             if any(group.feature.curved)
         ]
 
-    def measure(self, measured: Measured) -> Array:
+    def measure(self, measured: Shapes) -> Array:
         """See `Limit.measure`."""
         least = np.full(len(measured.shapes), np.inf)
         for chains in chains_of(measured.shapes):
             for patch in chains.curved:
                 radius, widening = chains.radius[:, patch, None, None], np.tan(chains.half_angle[:, patch, None, None])
-                radii = np.sign(radius) * (radius + chains.heights[:, :, patch : patch + 2] * widening)
+                radii = np.sign(radius) * (radius + chains.heights(patch) * widening)
                 least[chains.panels] = np.minimum(least[chains.panels], radii.min(axis=(1, 2)))
         return least
 

@@ -19,6 +19,7 @@ from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.reference.settings import ReferenceSettings
 from tests.drawn import LENGTH, WAVE, WIDTH, areas, cut, cut_points, line, plate, raw
 from tests.model_files import STRIP, strip_faces, write_labelled, write_shape
+from tests.thorough import cases
 
 
 def sine(count, periods, noise=0.0):
@@ -63,7 +64,9 @@ def curves_of(edges):
 
 
 @pytest.mark.parametrize("drawn", [lambda points: polyline_edge(list(points)), wire], ids=["spline", "segments"])
-@pytest.mark.parametrize(("count", "periods"), [(200, 1), (1000, 1), (4000, 1), (4000, 10)])
+@pytest.mark.parametrize(
+    ("count", "periods"), cases([(200, 1), (1000, 1)], [(200, 1), (1000, 1), (4000, 1), (4000, 10)])
+)
 def test_fine_polyline_makes_the_panels_of_the_curve_that_it_samples(tmp_path, drawn, count, periods):
     shape = drawn(sine(count, periods))
     panels = reference(tmp_path, shape).panels

@@ -23,9 +23,10 @@ from tests.drawn import LENGTH, WIDTH, curve, cut, plate, polyline
 from tests.known_faces import hem, spiral
 from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import kernel_face
+from tests.thorough import cases
 
 # Parts of the numbers by which what is drawn differs from draw to draw.
-NOISES = (1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
+NOISES = cases((1e-15, 1e-12), (1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11))
 POINTS = 400
 NOISE_OF_SIDES = 1e-14
 SAME_PLACE = 0.1  # mm; as far as the smooth curve that a fine polyline stands for is left open by its facets

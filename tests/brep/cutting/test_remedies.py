@@ -3,11 +3,11 @@
 import pytest
 
 from cadpanel.brep.cutting import by_length, lip_band, ways
+from cadpanel.brep.cutting.remedies import other_ways
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.read import read_reference
-from cadpanel.brep.skin.strip import NoStripError
 from cadpanel.brep.splitting.splitter import UncutError
-from cadpanel.errors import OverlapError, PanelError, ReferenceFileError
+from cadpanel.errors import NoStripError, OverlapError, PanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.cuts import model_of, panels_of
 from tests.knife_edges import aerofoil_faces
@@ -67,3 +67,44 @@ def test_panels_that_were_cut_here_are_not_to_be_deleted():
     said = str(error.of_a_cut())
     assert "delete" not in said
     assert said.endswith("both were cut from its skin, which comes so close to itself there.")
+
+
+def test_what_was_tried_in_vain_is_said_and_no_more(tmp_path, monkeypatch):
+    tried = []
+
+    def read(_path, how):
+        tried.append(how)
+        raise NoStripError("The surface is none")
+
+    monkeypatch.setattr("cadpanel.brep.read._read", read)
+    with pytest.raises(NoStripError, match=r"is none: dividing it into 5 and a grid of 3x2 do not help\.$"):
+        read_reference(tmp_path / "roof.step", ReferenceSettings(divide=4, lip=300.0, unit="m"))
+    assert [(how.divide, how.grid, how.lip, how.unit) for how in tried[1:]] == [
+        (5, None, None, "m"),
+        (None, (3, 2), None, "m"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"divide": 4},
+        {"divide": "auto"},
+        {"panel_length": 900.0},
+        {"panel_size": (900.0, 500.0)},
+        {"grid": (1, 1)},
+        {"stations": (500.0,)},
+    ],
+)
+def test_at_most_two_other_ways_are_tried_and_neither_is_the_one_asked_for(how):
+    settings = ReferenceSettings(unit="mm", **how)
+    others = other_ways(settings)
+    assert 1 <= len(others) <= 2
+    assert all(
+        other.settings not in (settings, *(one.settings for one in others if one is not other)) for other in others
+    )
+
+
+@pytest.mark.parametrize("how", [{}, {"network": "lines.step"}, {"mesh": "mesh.obj"}])
+def test_nobody_draws_other_curves(how):
+    assert other_ways(ReferenceSettings(unit="mm", **how)) == ()

@@ -24,8 +24,9 @@ from tests.certified import Delivery, strip
 from tests.drawn import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
+from tests.thorough import cases
 
-VARIANTS = 110  # of each of six files, so 660 in all
+VARIANTS = cases(24, 110)  # of each of six files, so 660 in all in a thorough run
 SECONDS = 3.0  # after which a reader counts as hanging
 LONGEST_SENTENCE = 1000
 pytestmark = pytest.mark.usefixtures("forked_readers")  # or the kernel would be loaded for every crash
@@ -131,7 +132,7 @@ def lines(folder):
 # Over what seeds 7 and 22 leave, the kernel crashes when a curve is laid over a face.
 @pytest.mark.parametrize(
     ("seeds", "ways"),
-    [(range(NUMBER, NUMBER + 6 * 30, 6), ("divide", "grid")), ((7, 10, 16, 22, 28), ("network",))],
+    [(range(NUMBER, NUMBER + 6 * cases(8, 30), 6), ("divide", "grid")), ((7, 10, 16, 22, 28), ("network",))],
     ids=["alone", "curves"],
 )
 def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatch, seeds, ways):
@@ -160,7 +161,7 @@ def test_damaged_delivery_is_refused_or_does_not_hold(tmp_path, file):
     delivery = Delivery(tmp_path, strip())
     path = getattr(delivery, file)
     whole, ends = path.read_bytes(), []
-    for seed in range(100, 130):
+    for seed in cases((100, 103, 106, 114, 125), range(100, 130)):
         path.write_bytes(damaged(whole, seed))
         try:
             ends.append(str(delivery.certify().holds))

@@ -1,0 +1,24 @@
+"""What the console says at the end of a fit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cadpanel.cli.tables import print_report
+from cadpanel.delivery.records.report import read_report
+
+
+@pytest.mark.parametrize(("kinks", "told"), [((1.0, 3.0), False), ((12.2, 3.1), True), ((0.0, 12.2), True)])
+def test_a_kink_that_people_see_is_told_with_its_seam(
+    delivered: Path, capsys: pytest.CaptureFixture[str], kinks: tuple[float, float], told: bool
+) -> None:
+    report = read_report(delivered / "report.json")
+    seams = [seam.model_copy(update={"max_kink": kink}) for seam, kink in zip(report.seams, kinks, strict=True)]
+    print_report(report.model_copy(update={"seams": tuple(seams)}), delivered, 1.0)
+    said = capsys.readouterr().out
+    assert ("largest kink" in said) is told
+    if told:
+        first, second = seams[kinks.index(12.2)].panels
+        assert f"The largest kink, 12.2 degrees, is between '{first}' and '{second}'" in said

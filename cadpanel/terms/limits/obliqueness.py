@@ -19,7 +19,7 @@ from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.chain_checks import LARGEST_ECCENTRICITY, SMALLEST_CUT_COSINE
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.terms.limits.chains import chains_of
-from cadpanel.terms.limits.limit import Limit, Measured, Panels, Row
+from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.term import HeldTerm
 
@@ -52,7 +52,7 @@ class Obliqueness(Limit):
             if len(group.feature.cut_numbers)
         ]
 
-    def measure(self, measured: Measured) -> Array:
+    def measure(self, measured: Shapes) -> Array:
         """See `Limit.measure`."""
         least = np.full(len(measured.shapes), np.inf)
         for chains in chains_of(measured.shapes):

@@ -11,8 +11,7 @@ from cadpanel.arrays import Array
 from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.leans import leans
-from cadpanel.fitting.measures.obliqueness import too_oblique
-from cadpanel.fitting.measures.verdict import keeps_limits, limits_of
+from cadpanel.fitting.measures.verdict import keeps_limits, limits_of, too_oblique
 from cadpanel.fitting.rules.rule import Outcome
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
@@ -156,7 +155,7 @@ class FitResult:
         if self.tolerance_met:
             return None
         m = self.measures
-        oblique = np.flatnonzero(too_oblique(self.shapes))
+        oblique = np.flatnonzero(too_oblique(m))
         if len(oblique):
             return (
                 f"panel '{self.reference.panels[oblique[0]].name}' cannot be built: an end of it is cut too obliquely; "

@@ -21,8 +21,9 @@ from cadpanel.solver.barrier import Barrier, Work
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.bounds import BoundedStep, bounded_step
 from cadpanel.solver.components import Components
-from cadpanel.solver.ended import Best, Ended, Limits
-from cadpanel.solver.held_model import HeldModel, Point
+from cadpanel.solver.ended import Ended, Limits
+from cadpanel.solver.held_model import HeldModel
+from cadpanel.solver.merit import Merit
 from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 
 # Damping: a share of the free cost's own Gauss-Newton matrix, and how much of its diagonal's unit stands in for rows of
@@ -39,7 +40,7 @@ _ELASTIC, _ELASTIC_RISE = 100.0, 3.0
 # Distances follow the vectors down to this share of them a step, such that steps have about this length.
 _LAG, _LEAST_LAG, _MOST_LAG, _STEP, _LAG_POWER = 0.8, 0.6, 0.95, 0.1, 0.3
 # Steps have settled where they gain at least this share of what they promise, and promise no more than these shares.
-_GAIN, _HARMFUL, _READY, _SHARE_LEFT = 0.25, 1e-3, 0.1, 3e-4
+_GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
@@ -48,8 +49,8 @@ _WEDGED, _ANEW = 1e5, 3
 _FIRMLY, _FIRM_YET = 1e-3, 1.5
 # A correction longer than this share of the step is none.
 _BENT = 0.5
-# Promises below this share of the cost are rounding; a cost of this size is none.
-_ROUNDING, _TINY = 1e-9, 1e-30
+# A cost of this size is none.
+_TINY = 1e-30
 # The cost of a start that costs nothing itself is taken for this share of the squares of what is too long.
 _OPEN = 0.005
 
@@ -116,6 +117,7 @@ class _Run:
         self.growth, self.lag = np.full(count, FIRST_GROWTH), np.full(count, _LAG)
         self.anew, self.waited = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
         self.scales = self.model.lengths[:, None] ** self.model.powers
+        self.merit = Merit(model, self.blocks, self.of)
         if after is None:
             self._begin()
         else:
@@ -124,7 +126,7 @@ class _Run:
         for barrier, of in self._giving():
             self.target = np.minimum(self.target, of.smallest(barrier.goal))
         self.target[np.isinf(self.target)] = 0.0
-        self.now = self.best = self._worth(self.point)
+        self.now = self.best = self.merit.worth(self.point, self.barriers)
 
     def _giving(self) -> list[tuple[Barrier, Components]]:
         """What may give way."""
@@ -142,7 +144,7 @@ class _Run:
             if one.hold.gives_way:
                 giving += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
                 self.widest = np.maximum(self.widest, of.largest(np.linalg.norm(vectors, axis=-1)))
-        scale = np.maximum.reduce([self._cost(), _OPEN * beyond, self.least, np.full(count, _TINY)])
+        scale = np.maximum.reduce([self.merit.free_cost(self.point), _OPEN * beyond, self.least, np.full(count, _TINY)])
         self.mu = _BARRIER * scale / np.maximum(np.where(giving > 0.0, giving, self.vectors_held), 1.0)
         self.barriers = tuple(
             Barrier(one, most=of.each(_ELASTIC * self.mu), ease=of.each(self.ease))
@@ -220,7 +222,9 @@ class _Run:
         step = bounded.step + self._bent(bounded, work, moved)
         step[~goes_on[pattern.component]] = 0.0
         promise = np.where(goes_on[pattern.component], bounded.promised, 0.0)
-        taken, gain, failed = self._take(step, promise)
+        self.point, taken, gain, failed = self.merit.take(
+            point, step, promise, barriers=self.barriers, mu=self.mu, goes_on=goes_on, least=self.least
+        )
         far = self.blocks.largest(np.abs(step) / self.scales)
         calmer = np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG)
         self.lag = np.where(failed, np.minimum(_MOST_LAG, self.lag**0.5), calmer)
@@ -228,12 +232,12 @@ class _Run:
         self.damping, self.growth = (
             np.where(goes_on, new, old) for new, old in ((damped, self.damping), (growth, self.growth))
         )
-        cost, promised = self._cost(), np.abs(self.blocks.total(promise))
+        cost, promised = self.merit.free_cost(self.point), np.abs(self.blocks.total(promise))
         ready = _READY * self.vectors_held * self.mu + _SHARE_LEFT * cost + self.least
         settled = goes_on & ~failed & (gain > _GAIN) & (promised <= ready)
         stuck = failed & (self.growth >= _STUCK)
         self._renew(work, moved, taken, settled, stuck)
-        self.now = self._worth(self.point)
+        self.now = self.merit.worth(self.point, self.barriers)
         self.best = self.best.mixed(self.now, self.best.beaten_by(self.now), self.blocks)
         self._narrow(settled, failed, promised, cost)
 
@@ -291,64 +295,3 @@ class _Run:
         self.widest = np.where(follows, np.maximum(self.widest * self.lag, self.target), self.widest)
         for barrier, of, vectors in zip(self.barriers, self.of, self.point.vectors, strict=True):
             barrier.follow(vectors, of.each(self.widest), of.each(self.lag), of.each(follows))
-
-    def _take(self, step: Array, promised: Array) -> tuple[BoolArray, Array, BoolArray]:
-        """Go where a step leads, wherever it does no harm.
-
-        Returns:
-            which blocks (count,) moved; the share of its promise (components,) that the step kept; and which
-            components failed.
-        """
-        pattern, point, total = self.pattern, self.point, self.blocks.total
-        before = self._merit(point)
-        ahead, after = self._tried(np.where(step == 0.0, point.unknowns, self.bounds.clip(point.unknowns + step)))
-        hoped, was = total(promised), total(before)
-        gain = (was - total(after)) / np.maximum(np.abs(hoped), 1e-300)
-        gain = np.where(np.abs(hoped) <= _ROUNDING * total(point.cost) + self.least, 1.0, gain)
-        failed = ~(gain > _HARMFUL) & self.goes_on
-        taken = np.ones(pattern.count, dtype=bool)
-        if failed.any():
-            harm = ~(pattern.around(before) - pattern.around(after) > 0.0)
-            taken = ~(failed[pattern.component] & harm)
-            ahead, after = self._part(ahead.unknowns, taken)
-            stuck = failed & ~(total(after) < was)
-            if (stuck[pattern.component] & taken).any():
-                taken &= ~stuck[pattern.component]
-                ahead, _ = self._part(ahead.unknowns, taken)
-        self.point = ahead
-        return taken, gain, failed
-
-    def _part(self, trial: Array, taken: BoolArray) -> tuple[Point, Array]:
-        """Where only some blocks moved."""
-        if not taken.any():
-            return self.point, self._merit(self.point)
-        return self._tried(np.where(taken[:, None], trial, self.point.unknowns))
-
-    def _tried(self, trial: Array) -> tuple[Point, Array]:
-        with np.errstate(all="ignore"):
-            ahead = self.model.at(trial)
-            merit = self._merit(ahead)
-        return ahead, np.where(np.isfinite(merit), merit, np.inf)
-
-    def _merit(self, point: Point) -> Array:
-        """(count,) the cost with all penalties."""
-        merit = point.cost.copy()
-        for barrier, of, vectors in zip(self.barriers, self.of, point.vectors, strict=True):
-            share = barrier.cost(vectors, of.each(self.mu)) / len(barrier.held.blocks)
-            for blocks in barrier.held.blocks:
-                merit += np.bincount(blocks, share, minlength=len(merit))
-        return merit
-
-    def _cost(self) -> Array:
-        """(components,) the cost without penalties."""
-        cost = self.blocks.total(self.point.cost)
-        for one, of, vectors in zip(self.model.held, self.of, self.point.vectors, strict=True):
-            cost += 0.5 * of.total((one.hold.weight * one.hold.squares(vectors)).sum(axis=1))
-        return cost
-
-    def _worth(self, point: Point) -> Best:
-        worst = {False: np.zeros(self.blocks.count), True: np.zeros(self.blocks.count)}
-        for barrier, of, vectors in zip(self.barriers, self.of, point.vectors, strict=True):
-            gives = barrier.held.hold.gives_way
-            worst[gives] = np.maximum(worst[gives], of.largest(barrier.violation(vectors)))
-        return Best(point.unknowns, worst[False], worst[True], self.blocks.total(point.cost))

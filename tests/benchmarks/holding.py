@@ -4,12 +4,14 @@
     python -m tests.benchmarks.holding grids --side 20 --side 100
     python -m tests.benchmarks.holding scipy --panels 10 --panels 100
     python -m tests.benchmarks.holding lips --count 100
+    python -m tests.benchmarks.holding memory --panels 10000
 
 Seconds are of the processor, of one thread where OPENBLAS_NUM_THREADS=1 is set. All measuring is included.
 """
 
 from __future__ import annotations
 
+import resource
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -59,6 +61,21 @@ def grids(side: Annotated[list[int], typer.Option(help="Panels a side.")]) -> No
         roof = grid(dome(6.0 * count**2, 3000.0 * count), count, count)  # each panel turns by half a degree
         for feature in ("planar-quadrilateral", "cylinder"):
             _row(f"{count} x {count}, {feature}", cp.fit, roof, FitSettings(feature=feature))
+
+
+@app.command()
+def memory(panels: Annotated[int, typer.Option(help="Panels of the strip.")] = 10_000) -> None:
+    """Fit one strip by default settings, and say how much memory that takes beyond what the reference does."""
+    lip = reference(long_lip(panels))
+    before = _most_memory()
+    cp.fit(lip)
+    most = _most_memory()
+    print(f"{panels} panels: {most / 1024:.0f} MB at most, {(most - before) / panels:.0f} KB a panel for the fit")
+
+
+def _most_memory() -> int:
+    """KB that this process has held so far at most."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 @app.command()

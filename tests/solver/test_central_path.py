@@ -37,3 +37,12 @@ def test_the_weight_is_the_slope_of_the_penalty(size, sign, mu):
 def test_without_a_barrier_the_penalty_is_what_is_exceeded_times_the_greatest_weight():
     c = np.array([-1.0, -1e-3, 1e-3, 1.0])
     assert penalty(c, 1e-12, np.full(4, 5.0)) == pytest.approx(5.0 * np.maximum(c, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("c", [1e9, 1e30])
+def test_however_far_something_is_exceeded_its_weight_is_seen_to_be_below_the_greatest(c):
+    """Both the weight and a tenth of what is left of the greatest: the stiffness divides by that."""
+    for most in (3e-7, 1.0, 7e5):
+        weight = central_weight(np.array([c]), 1e-12 * most, np.array([most]))
+        assert weight[0] < most
+        assert most - 0.1 * (most - weight[0]) < most

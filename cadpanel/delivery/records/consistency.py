@@ -25,6 +25,7 @@ from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.flange_width import FlangeWidth
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.obliqueness import Obliqueness
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
@@ -171,7 +172,7 @@ class Alone:
     shapes: Sequence[Panel]
 
 
-OF_SHAPES = (MinRadius(), FlangeWidth())
+OF_SHAPES = (MinRadius(), FlangeWidth(), Obliqueness())
 """The limits whose measure is seen of panels alone."""
 
 
@@ -188,6 +189,8 @@ def _summary_faults(report: ReportModel, depth: float) -> Iterator[str]:
     shapes = [fitted_shape(panel, depth) for panel in report.panels]
     moved = max(panel.moved for panel in report.panels)
     for limit in OF_SHAPES:
+        if limit.rows[-1].key not in summary.model_fields_set:
+            continue  # a report from before the limit was known
         least, of_list = getattr(summary, limit.rows[-1].key), float(limit.measure(Alone(shapes)).min())
         known = np.isfinite(of_list)
         if (least is not None) != known or (known and not abs(least - of_list) <= ON_PATCH + moved):

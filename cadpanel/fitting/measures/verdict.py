@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from cadpanel.arrays import BoolArray
 from cadpanel.fitting.measures.fit import Measures
-from cadpanel.fitting.measures.obliqueness import too_oblique
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.limit import Limit
+from cadpanel.terms.limits.obliqueness import Obliqueness
 
 
 def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
@@ -16,7 +17,7 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
 
     What cannot be built keeps nothing.
     """
-    if too_oblique(measures.shapes).any():
+    if too_oblique(measures).any():
         return False
     if settings.max_deviation is not None and measures.max_deviation.max() > settings.max_deviation:
         return False
@@ -27,6 +28,12 @@ def keeps_limits(measures: Measures, settings: FitSettings) -> bool:
         all((gaps[what] <= allowed).all() for what, allowed in asked.items())
         and all(limit.kept(measures, allowed).all() for limit, allowed in limits_of(settings))
     )
+
+
+def too_oblique(measures: Measures) -> BoolArray:
+    """(panels,) which cannot be built as an end is cut too obliquely, whatever was asked for."""
+    limit = Obliqueness()
+    return ~limit.kept(measures, limit.default)
 
 
 def limits_of(settings: FitSettings) -> Iterator[tuple[Limit, float]]:

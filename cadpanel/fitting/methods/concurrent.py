@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
-from cadpanel.fitting.measures.edges import PanelEdges
-from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods.holding import (
     MARGIN,
     GapTerm,
     gap_terms,
     held_within,
     prices,
+    seam_excess,
     seam_terms,
     stopped_as,
     tighten,
 )
+from cadpanel.fitting.methods.kinks import less_kinked
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.restoring import restored
@@ -27,14 +27,13 @@ from cadpanel.fitting.methods.weighted import Weighted
 from cadpanel.fitting.objective import HeldObjective, Objective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
-from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.components import Components
 from cadpanel.solver.giving_way import HeldSolution
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftTerm
-from cadpanel.terms.limits.kink import Kink
+from cadpanel.terms.limits.kink import KinkTerm
 from cadpanel.terms.term import HeldTerm
 
 # Before tolerances count, gaps and drifts weigh this much against the mean squared deviation: local fits of panels with
@@ -112,6 +111,10 @@ def _hold_seams(
         blocks = Components.of(model.pattern)
         found = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
         found = _tightened(problem, model, found, lost, starts[0], settings, progress)
+    if any(isinstance(term, KinkTerm) for term in model.held) and Stop.TOLD not in found.stopped:
+        missed = np.array([stop not in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
+        if missed.any():
+            found = less_kinked(problem, model, found, settings, missed)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
     if not found.held:
         return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found))
@@ -155,14 +158,6 @@ def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list
     """What holds gaps, a little inside what is allowed, as seams run at unknowns (panels, size)."""
     allowed = {what: most * (1.0 - MARGIN) for what, most in problem.gaps(settings).items()}
     return gap_terms(problem, allowed, problem.state(unknowns))
-
-
-def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
-    """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
-    met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
-    measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
-    excess = {what: measured[what] / most for what, most in problem.gaps(settings).items()}
-    return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
 
 
 def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:

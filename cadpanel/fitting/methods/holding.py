@@ -8,9 +8,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
+from cadpanel.fitting.measures.edges import PanelEdges
+from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods.method import Progress
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Limits
 from cadpanel.solver.giving_way import Elsewhere, HeldSolution, hold_or_give_way
@@ -73,6 +77,14 @@ def gap_terms(problem: Problem, gaps: Mapping[str, float | Array], state: State)
             between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
             terms.append(PartedGap(between, state, own, share=_ARC_SHARE))
     return terms
+
+
+def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
+    """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
+    met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
+    measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
+    excess = {what: measured[what] / most for what, most in problem.gaps(settings).items()}
+    return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}
 
 
 def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]) -> None:

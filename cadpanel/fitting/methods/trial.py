@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.methods.concurrent import gather, seam_excess, seams_held
-from cadpanel.fitting.methods.holding import MARGIN, tighten
+from cadpanel.fitting.methods.concurrent import gather, seams_held
+from cadpanel.fitting.methods.holding import MARGIN, seam_excess, tighten
 from cadpanel.fitting.methods.method import Fitted, Method, Progress
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem

@@ -11,6 +11,7 @@ from cadpanel.terms.limits.flange_width import FlangeWidth
 from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.min_radius import MinRadius
+from cadpanel.terms.limits.obliqueness import Obliqueness
 from cadpanel.terms.limits.outline_drift import DriftOutline
 from cadpanel.terms.limits.seam_turn import SeamTurn
 
@@ -23,4 +24,5 @@ LIMITS: tuple[Limit, ...] = (
     DriftOutline(),
     MinRadius(),
     FlangeWidth(),
+    Obliqueness(),
 )

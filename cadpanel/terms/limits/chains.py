@@ -23,6 +23,7 @@ class Chains:
         curved, flat: which patches are cones or cylinders, and which are flat.
         points, directions, normals: (n, k + 1, 3) of the rulings, mm.
         corners: (n, 2, k + 1, 3) by end and ruling, mm.
+        cut_normals: (n, 2, 3) unit normals of the planes that cut the ends.
         radius, half_angle: (n, k) normal radius in mm and half angle in radians of the patches, 0 where flat.
     """
 
@@ -33,6 +34,7 @@ class Chains:
     directions: Array
     normals: Array
     corners: Array
+    cut_normals: Array
     radius: Array
     half_angle: Array
 
@@ -83,6 +85,7 @@ def _chains(curved: tuple[bool, ...], places: list[int], shapes: list[Chain]) ->
         directions=directions,
         normals=normals,
         corners=corners,
+        cut_normals=cut_normals,
         radius=numbers[..., 0],
         half_angle=numbers[..., 1],
     )

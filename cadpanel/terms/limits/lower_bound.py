@@ -22,21 +22,21 @@ _WEIGHT = 1.0
 class LackTerm(HeldTerm):
     """Holds lengths of the panels of one group above a least one; a kind of length is one subclass."""
 
-    def __init__(self, group: Group, place: int, panels: int, least: float, count: int) -> None:
+    def __init__(self, group: Group, place: int, panels: int, least: Array | float, count: int) -> None:
         """Hold them above `least`, in units of the solver's length.
 
         Args:
             group: the panels.
             place: which group of the layout it is.
             panels: number of all panels.
-            least: the least length.
+            least: the least length, one for all or (panels of the group, 1).
             count: lengths a panel.
         """
         self._group, self._place = group, place
         self.blocks, self.pair, self.panels = (group.panels,), None, panels
         self._least = (1.0 + _SPARE) * least
-        shape = (len(group.panels), count)
-        self.hold = Hold(np.full(shape, _SPARE * least), weight=_WEIGHT, scale=np.full(shape, least), one_sided=True)
+        scale = np.broadcast_to(least, (len(group.panels), count)).astype(np.float64)
+        self.hold = Hold(_SPARE * scale, weight=_WEIGHT, scale=scale, one_sided=True)
 
     @abstractmethod
     def lengths(self, walked: Walk, corners: Points, *, derivatives: bool) -> tuple[Array, Array]:

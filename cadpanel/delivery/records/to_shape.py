@@ -81,6 +81,12 @@ def unfolded_rulings(panel: PanelModel) -> tuple[int, int]:
     return first, len(panel.corners[0]) - last
 
 
+def fitted_patches(panel: PanelModel) -> tuple[PatchModel, ...]:
+    """The patches of a panel as it was fitted, without those of its returns."""
+    own = slice(*unfolded_rulings(panel))
+    return panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
+
+
 def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
     """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
 
@@ -96,8 +102,12 @@ def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
     own = slice(*unfolded_rulings(panel))
     moves = (np.array(panel.other_face) - np.array(panel.corners))[:, own]
     other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
-    patches = panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
-    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other, "patches": patches}
+    uncut = {
+        "corners": panel.fitted.corners,
+        "cuts": panel.fitted.cuts,
+        "other_face": other,
+        "patches": fitted_patches(panel),
+    }
     return recorded_shape(panel.model_copy(update=uncut), depth)
 
 

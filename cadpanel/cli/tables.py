@@ -13,8 +13,9 @@ from rich.text import Text
 
 from cadpanel.delivery.outputs.report_html import PAGE
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.comparison import ComparisonModel
-from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+from cadpanel.delivery.records.report import ReportModel, SummaryModel
 from cadpanel.delivery.records.settings import ComparisonSettingsModel
 from cadpanel.delivery.records.to_shape import fitted_patches
 from cadpanel.terms.limits.catalogue import LIMITS

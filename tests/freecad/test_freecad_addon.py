@@ -18,8 +18,9 @@ from cadpanel.freecad.install import folder_of_addons, install
 from fixtures.make_fixtures import Fixture, write
 from tests.delivered import LIP
 from tests.freecad.program import run_in_freecad
+from tests.thorough import thorough
 
-pytestmark = pytest.mark.freecad
+pytestmark = [pytest.mark.freecad, thorough]
 FACES = "faces.brep"
 NAMES = ["N-01", "N-02", "N-03"]
 

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.delivery.records.certified import CertificateModel
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
-from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
+from cadpanel.delivery.records.report import PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.delivery.records.shape_checks import shape_faults
 from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
 from cadpanel.features.catalogue import AUTO

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cadpanel.cli.printable import PrintableConsole
 from cadpanel.delivery.outputs.report_html import PAGE
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.certified import CertificateModel, TimingModel
@@ -87,7 +88,7 @@ def multiple(value: float | None) -> str:
 def console() -> Console:
     """Standard output; a file or a pipe gets lines wide enough for the tables."""
     own_width = sys.stdout.isatty() or "COLUMNS" in os.environ
-    return Console(highlight=False, width=None if own_width else 120)
+    return PrintableConsole(None if own_width else 120)
 
 
 def print_report(report: ReportModel, folder: Path, took: float) -> None:

@@ -320,6 +320,8 @@ class ReportModel(Record):
         names = {panel.name for panel in self.panels}
         if len(names) != len(self.panels):
             raise ValueError("two panels have the same name")
+        if not self.panels:
+            raise ValueError("it tells of no panel")
         if len(self.panels) != self.reference.panels:
             raise ValueError(f"the reference counts {self.reference.panels} panels, the list {len(self.panels)}")
         if len(self.seams) != self.reference.seams:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel import api_result
-from cadpanel.api_keywords import check_keywords
+from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords, check_made
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
@@ -254,7 +254,12 @@ def unroll(
 
 
 def to_cadquery(
-    panels: FitResult | Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel,
+    *,
+    thickness: float = 3.0,
+    joint: float = 0.0,
+    skin_side: SkinSide = "outer",
+    **made: Unpack[MadeKeywords],
 ) -> cadquery.Workplane:
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
@@ -263,6 +268,7 @@ def to_cadquery(
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
+        made: ends, fixings and returns, as `deliver` has them; sheets without holes and returns if not given.
 
     Raises:
         PanelError: a panel cannot be built.
@@ -270,20 +276,38 @@ def to_cadquery(
     """
     from cadpanel.brep.building.adapters import to_cadquery_shape, to_workplane
 
-    solids = [panel.solid for panel in _build(panels, thickness, joint, skin_side)]
+    solids = [
+        panel.solid
+        for panel in _build(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
+    ]
     return to_workplane(solids[0]).newObject([to_cadquery_shape(solid) for solid in solids])
 
 
 @overload
 def to_build123d(
-    panels: Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+    panels: Panel,
+    *,
+    thickness: float = 3.0,
+    joint: float = 0.0,
+    skin_side: SkinSide = "outer",
+    **made: Unpack[MadeKeywords],
 ) -> build123d.Part: ...
 @overload
 def to_build123d(
-    panels: FitResult, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+    panels: FitResult,
+    *,
+    thickness: float = 3.0,
+    joint: float = 0.0,
+    skin_side: SkinSide = "outer",
+    **made: Unpack[MadeKeywords],
 ) -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | Panel, *, thickness: float = 3.0, joint: float = 0.0, skin_side: SkinSide = "outer"
+    panels: FitResult | Panel,
+    *,
+    thickness: float = 3.0,
+    joint: float = 0.0,
+    skin_side: SkinSide = "outer",
+    **made: Unpack[MadeKeywords],
 ) -> build123d.Compound:
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
@@ -292,6 +316,7 @@ def to_build123d(
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
+        made: ends, fixings and returns, as `deliver` has them; sheets without holes and returns if not given.
 
     Raises:
         PanelError: a panel cannot be built.
@@ -299,7 +324,7 @@ def to_build123d(
     """
     from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
-    built = _build(panels, thickness, joint, skin_side)
+    built = _build(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
     if isinstance(panels, FitResult):
         return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
     return to_build123d_part(built[0].solid, panels.name)
@@ -315,6 +340,7 @@ def write_step(
     skins: bool = False,
     schema: Schema = "AP242",
     panels: Sequence[str] = (),
+    **made: Unpack[MadeKeywords],
 ) -> None:
     """Write one STEP file, one product a panel with its name; for a folder with the proof beside it, see `deliver`.
 
@@ -327,6 +353,7 @@ def write_step(
         skins: write the skins as open shells instead of the solids.
         schema: "AP242" or "AP214".
         panels: names of those that are written, * for anything; all if empty.
+        made: ends, fixings and returns, as `deliver` has them; sheets without holes and returns if not given.
 
     Raises:
         PanelError: a panel cannot be built.
@@ -339,21 +366,23 @@ def write_step(
     names = [shape.name for shape in result.shapes] if isinstance(result, FitResult) else [result.name]
     chosen = set(chosen_panels(names, [panels] if isinstance(panels, str) else panels))
     # All of them are built: a panel's neighbours say how it is cut.
-    built = _build(result, thickness, joint, skin_side, schema)
+    sheet = SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
+    built = _build(result, sheet, made)
     own = [panel for panel in built if panel.shape.name in chosen]
     (write_skins if skins else write_solids)(Path(path), own, _title(result), schema)
 
 
-def _build(
-    panels: FitResult | Panel, thickness: float, joint: float, skin_side: SkinSide, schema: Schema = "AP242"
-) -> tuple[PanelSheet, ...]:
+def _build(panels: FitResult | Panel, sheet: SheetKeywords, made: MadeKeywords) -> tuple[PanelSheet, ...]:
     from cadpanel.delivery.settings import SheetSettings
     from cadpanel.delivery.sheets import build_panels
+    from cadpanel.delivery.shop_settings import ShopSettings
 
-    sheet = SheetSettings(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
+    check_made(made)
+    asked = SheetSettings(**sheet, ends=made.get("ends", "bevel"))
+    shop = ShopSettings(fixings=made.get("fixings"), returns=made.get("returns"))
     if isinstance(panels, FitResult):
-        return build_panels(panels.shapes, sheet, panels.reference.seams, None, panels.own_joints()).panels
-    return build_panels([panels], sheet).panels
+        return build_panels(panels.shapes, asked, panels.reference.seams, None, panels.own_joints(), shop).panels
+    return build_panels([panels], asked, shop=shop).panels
 
 
 def _title(panels: FitResult | Panel) -> str:

@@ -2,15 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import fields
+from typing import TypedDict
 
-from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.settings import Ends, Schema, SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.near import near_names
 from cadpanel.reference.settings import ReferenceSettings
+
+
+class MadeKeywords(TypedDict, total=False):
+    """How sheets are made: walls in the planes of joints or square to the sheet, holes and returns, as `deliver` does.
+
+    Attributes:
+        ends: "bevel" or "square".
+        fixings: diameter of fixing holes, their largest pitch and the distance of their middles from the edge, mm.
+        returns: length of folded sides on their outer face and their inner radius, mm.
+    """
+
+    ends: Ends
+    fixings: Sequence[float] | None
+    returns: Sequence[float] | None
+
+
+class SheetKeywords(TypedDict, total=False):
+    """What a sheet is, for those who build it."""
+
+    thickness: float
+    joint: float
+    skin_side: SkinSide
+    schema: Schema
+
 
 _SETTINGS = {
     "read": (ReferenceSettings,),
@@ -38,3 +64,15 @@ def check_keywords(step: str, given: Iterable[str]) -> None:
         if home is not None:
             raise SettingsError(f"'{keyword}' is no setting of {step}(): give it to {home}()")
         raise SettingsError(f"{step}() knows no setting '{keyword}'; {near_names(keyword, known[step])}")
+
+
+def check_made(given: Iterable[str]) -> None:
+    """Refuse keywords by which no sheet is made.
+
+    Raises:
+        SettingsError: naming the keyword that it is nearly like.
+    """
+    known = [*SheetKeywords.__annotations__, *MadeKeywords.__annotations__]
+    for keyword in given:
+        if keyword not in MadeKeywords.__annotations__:
+            raise SettingsError(f"sheets are made by no setting '{keyword}'; {near_names(keyword, known)}")

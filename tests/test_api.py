@@ -10,6 +10,7 @@ import cadquery as cq
 import pytest
 
 import cadpanel as cp
+from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.step.file import read_step_shapes
 from tests.delivered import fitted, strip
 from tests.instances import random_polygon
@@ -40,6 +41,21 @@ def test_cadquery_gets_one_solid_a_panel() -> None:
     assert one.val().Volume() == pytest.approx(panels.vals()[1].Volume(), rel=1e-4)
     narrow = cp.to_cadquery(fitted(), thickness=4.0, joint=200.0)
     assert narrow.vals()[1].Volume() == pytest.approx(0.9 * one.val().Volume(), rel=0.02)
+
+
+def test_solids_are_made_as_a_delivery_makes_them(tmp_path: Path) -> None:
+    made: dict[str, Any] = {"ends": "square", "fixings": (6.5, 450.0, 40.0), "returns": (30.0, 3.0)}
+    report = cp.deliver(fitted(), tmp_path / "out", joint=10.0, outputs="step", **made)
+    volumes = [panel.volume for panel in report.panels]
+    solids = cp.to_cadquery(fitted(), joint=10.0, **made).vals()
+    assert [solid.Volume() for solid in solids] == pytest.approx(volumes, rel=1e-9)
+    children = cp.to_build123d(fitted(), joint=10.0, **made).children
+    assert [child.volume for child in children] == pytest.approx(volumes, rel=1e-9)
+    cp.write_step(fitted(), tmp_path / "solids.step", joint=10.0, **made)
+    written = [volume_and_centroid(shape)[0] for _, shape in read_step_shapes(tmp_path / "solids.step")]
+    assert written == pytest.approx(volumes, rel=1e-9)
+    with pytest.raises(cp.SettingsError, match="no setting 'thicknes'; perhaps 'thickness' is meant"):
+        cp.to_cadquery(fitted(), thicknes=4.0)  # type: ignore[call-arg]
 
 
 def test_build123d_gets_named_children_and_a_part() -> None:

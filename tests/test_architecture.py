@@ -212,7 +212,6 @@ THROUGH_A_DOOR = {
     "cadpanel.delivery.meshes.proof": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.document.neighbours": "tests/freecad/test_freecad_document.py",
     "cadpanel.delivery.document.panels": "tests/freecad/test_freecad_document.py",
-    "cadpanel.delivery.earlier": "tests/cli/test_rules.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
     "cadpanel.delivery.pages.dimensions": "tests/delivery/pages/test_document.py",
     "cadpanel.delivery.pages.flat_view": "tests/delivery/pages/test_document.py",

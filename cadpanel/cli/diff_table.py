@@ -10,7 +10,16 @@ from rich.text import Text
 from cadpanel.cli.tables import console, counted, length
 from cadpanel.delivery.records.difference import DifferenceModel, PanelDifference
 
-HEADINGS = ("corners moved", "contour", "bend lines", "inner radius", "sweep, degrees", "cut again", "bend again")
+HEADINGS = (
+    "corners moved",
+    "contour",
+    "bend lines",
+    "holes",
+    "inner radius",
+    "sweep, degrees",
+    "cut again",
+    "bend again",
+)
 
 
 def print_difference(found: DifferenceModel) -> None:
@@ -39,7 +48,7 @@ def print_difference(found: DifferenceModel) -> None:
 
 def _cells(panel: PanelDifference) -> list[Text]:
     renamed = panel.before is not None and panel.before != panel.name
-    sizes = [panel.moved, panel.contour, panel.bend_lines, panel.radius]
+    sizes = [panel.moved, panel.contour, panel.bend_lines, panel.holes, panel.radius]
     told = ["" if size is None else length(size) for size in sizes]
     told.append("" if panel.sweep is None else f"{panel.sweep:.2f}")
     return [

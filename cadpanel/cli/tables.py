@@ -18,6 +18,7 @@ from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.comparison import ComparisonModel
 from cadpanel.delivery.records.report import ReportModel, SummaryModel
 from cadpanel.delivery.records.settings import ComparisonSettingsModel
+from cadpanel.delivery.records.to_shape import fitted_patches
 from cadpanel.terms.limits.catalogue import LIMITS
 
 # Deviation in mm that is worth a line of its own.
@@ -209,8 +210,10 @@ def _bends(report: ReportModel) -> str:
     """What was taken for the bends between two flanges, and nothing where panels have none, or several."""
     widths, whole = [], []
     for panel in report.panels:
-        curved = [index for index, patch in enumerate(panel.patches) if patch.kind != "plane"]
-        if not curved or curved != list(range(1, len(panel.patches) - 1)):
+        # Returns are no part of the drawing.
+        patches = fitted_patches(panel)
+        curved = [index for index, patch in enumerate(patches) if patch.kind != "plane"]
+        if not curved or curved != list(range(1, len(patches) - 1)):
             return ""
         for end in panel.taken:
             widths.append(end[curved[-1] + 1] - end[curved[0]])

@@ -76,7 +76,8 @@ def _report(folder: str | Path) -> ReportModel:
 def _panels(report: ReportModel) -> dict[str, _Panel]:
     sheet, shop = report.settings.sheet(), report.settings.shop()
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    parts = flat_parts([recorded_shape(panel, depth) for panel in report.panels], sheet, shop)
+    square = sheet.ends == "square"
+    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
     offset = np.array(report.origin.offset)
     return {
         record.name: _Panel(record=record, part=part, corners=np.concatenate(record.corners) + offset)
@@ -130,10 +131,10 @@ def _lone(panel: _Panel, status: Status) -> PanelDifference:
 def _difference(before: _Panel | None, now: _Panel, tolerance: float, *, other_sheet: bool) -> PanelDifference:
     if before is None:
         return _lone(now, "new")
-    moved, (contour, bend_lines) = _apart(before, now), _flat(before.part, now.part)
+    moved, (contour, bend_lines, holes) = _apart(before, now), _flat(before.part, now.part)
     radius, sweep = _bends(before.part, now.part)
     bevel = _bevel(before.record, now.record)
-    cut = other_sheet or contour > tolerance
+    cut = other_sheet or max(contour, holes) > tolerance
     otherwise = other_sheet or max(bend_lines, radius) > tolerance or sweep > SAME_ANGLE
     bend = otherwise and bool(now.part.bends)
     other = before.record.feature != now.record.feature
@@ -150,6 +151,7 @@ def _difference(before: _Panel | None, now: _Panel, tolerance: float, *, other_s
         moved=_told(moved),
         contour=_told(contour),
         bend_lines=_told(bend_lines),
+        holes=_told(holes),
         radius=_told(radius),
         sweep=_told(sweep),
         bevel=_told(bevel),
@@ -159,21 +161,27 @@ def _difference(before: _Panel | None, now: _Panel, tolerance: float, *, other_s
     )
 
 
-def _flat(before: FlatPart, now: FlatPart) -> tuple[float, float]:
-    """How far the farthest place of the contour, and of the bends' lines, lies from the old one, laid upon it, mm."""
+def _flat(before: FlatPart, now: FlatPart) -> tuple[float, float, float]:
+    """How far the farthest place of contour, bends' lines and holes' middles lies from the old one, laid upon it, mm.
+
+    Infinite where they do not correspond; of holes also where they are others in number or diameter.
+    """
     old, new = before.pattern, now.pattern
     if old.edges != new.edges or old.tangents.shape != new.tangents.shape:
-        return np.inf, np.inf
+        return np.inf, np.inf, np.inf
     contours = [
         pattern.curves.points(np.broadcast_to(_PLACES, (len(pattern.curves), len(_PLACES)))).reshape(-1, 2)
         for pattern in (old, new)
     ]
     motion = best_motion(contours[1], contours[0])
-    farthest = [
-        float(np.linalg.norm(motion.moved(there) - here, axis=-1).max(initial=0.0))
-        for here, there in (contours, (old.tangents, new.tangents))
-    ]
-    return farthest[0], farthest[1]
+
+    def farthest(here: Array, there: Array) -> float:
+        return float(np.linalg.norm(motion.moved(there) - here, axis=-1).max(initial=0.0))
+
+    drilled = before.circles, now.circles
+    same = len(drilled[0]) == len(drilled[1]) and np.array_equal(drilled[0][:, 2], drilled[1][:, 2])
+    holes = farthest(drilled[0][:, :2], drilled[1][:, :2]) if same else np.inf
+    return farthest(contours[0], contours[1]), farthest(old.tangents, new.tangents), holes
 
 
 def _bends(before: FlatPart, now: FlatPart) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import PanelModel, read_report
-from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.records.to_shape import recorded_shape, unfolded
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.rules.boundary import boundary_of
 from cadpanel.fitting.rules.lock import LockRule
@@ -57,7 +57,7 @@ def _made(rule: LockRule, names: list[str], reference: Reference) -> LockRule:
 
 def _boundary(panel: PanelModel, depth: float) -> Array:
     """(q, 3) as it was fitted, before it was cut back; its corners alone where a round side was cut back, too."""
-    shape = recorded_shape(panel, depth)
+    shape = recorded_shape(unfolded(panel), depth)
     if panel.fitted is None:
         return boundary_of(shape)
     corners = np.array(panel.fitted.corners)

@@ -22,3 +22,25 @@ def test_a_kink_that_people_see_is_told_with_its_seam(
     if told:
         first, second = seams[kinks.index(12.2)].panels
         assert f"The largest kink, 12.2 degrees, is between '{first}' and '{second}'" in said
+
+
+@pytest.mark.parametrize("sides", [(), ("side 0",), ("side 1",), ("side 0", "side 1")])
+@pytest.mark.parametrize("flat", [False, True])
+def test_returns_are_neither_taken_for_the_bend_nor_hide_it(
+    delivered: Path, capsys: pytest.CaptureFixture[str], sides: tuple[str, ...], flat: bool
+) -> None:
+    report = read_report(delivered / "report.json")
+    panels = []
+    for panel in report.panels:
+        leg, round_ = panel.patches[0], panel.patches[1]
+        own, taken = (
+            (panel.patches[:1], tuple((row[0], row[-1]) for row in panel.taken))
+            if flat
+            else (panel.patches, panel.taken)
+        )
+        patches = (*(leg, round_) * ("side 0" in sides), *own, *(round_, leg) * ("side 1" in sides))
+        corners = tuple((*row[:1] * (len(patches) + 1),) for row in panel.corners)
+        told = {"patches": patches, "taken": taken, "returns": sides, "corners": corners}
+        panels.append(panel.model_copy(update=told))
+    print_report(report.model_copy(update={"panels": tuple(panels)}), delivered, 1.0)
+    assert ("Taken for the bend" in capsys.readouterr().out) is not flat

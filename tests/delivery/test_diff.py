@@ -25,7 +25,9 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     deliver(fitted(), place / "whole", shop=shop)
     deliver(fitted(), place / "jointed", SheetSettings(joint=10.0), shop)
     deliver(fitted_alone(), place / "alone", shop=shop)
-    return {name: place / name for name in ("whole", "jointed", "alone")}
+    drilled = ShopSettings(outputs="step", fixings=(6.5, 450.0, 40.0))
+    deliver(fitted(), place / "drilled", SheetSettings(joint=10.0, ends="square"), drilled)
+    return {name: place / name for name in ("whole", "jointed", "alone", "drilled")}
 
 
 @pytest.fixture
@@ -157,3 +159,32 @@ def test_what_cannot_be_compared_is_refused(folders: dict[str, Path], report: Re
     old = report.model_copy(update={"panels": tuple(p.model_copy(update={"blank": None}) for p in report.panels)})
     with pytest.raises(DeliveryError, match="without its blank"):
         diff(written(old, tmp_path / "old"), folders["whole"])
+
+
+@pytest.mark.parametrize(
+    ("fixings", "apart"),
+    [((6.5, 450.0, 41.0), 1.0), ((7.0, 450.0, 40.0), None), ((6.5, 300.0, 40.0), None), (None, None)],
+)
+def test_a_blank_whose_holes_alone_changed_is_cut_again(
+    folders: dict[str, Path], tmp_path: Path, fixings: tuple[float, float, float] | None, apart: float | None
+) -> None:
+    drilled = read_report(folders["drilled"] / REPORT)
+    assert diff(folders["drilled"], folders["drilled"]).same
+    settings = drilled.settings.model_copy(update={"fixings": fixings})
+    found = diff(folders["drilled"], written(drilled.model_copy(update={"settings": settings}), tmp_path / "other"))
+    for panel in found.panels:
+        assert (panel.status, panel.cut_again, panel.bend_again, panel.contour) == ("changed", True, False, 0.0)
+        if apart is None:
+            assert panel.holes is None
+        else:
+            assert panel.holes is not None
+            assert apart - 1e-6 <= panel.holes < 2.3 * apart  # holes begin twice as far from corners
+
+
+def test_blanks_with_square_walls_are_compared_as_they_are_cut(folders: dict[str, Path]) -> None:
+    reports = [read_report(folders[name] / REPORT) for name in ("jointed", "drilled")]
+    for panel, *pair in zip(
+        diff(folders["jointed"], folders["drilled"]).panels, *(r.panels for r in reports), strict=True
+    ):
+        areas = [one.blank.area for one in pair if one.blank is not None]
+        assert panel.area == pytest.approx(areas[1] - areas[0], abs=1e-3)

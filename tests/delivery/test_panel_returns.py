@@ -6,10 +6,13 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from cadpanel.arrays import Array
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.deliver import deliver
+from cadpanel.delivery.earlier import with_earlier
 from cadpanel.delivery.panel_returns import returned
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.return_checks import return_faults
@@ -17,6 +20,8 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError
+from cadpanel.fitting.rules.book import rules_of
+from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.delivered import fitted
 from tests.flat_parts import strip_records
@@ -25,6 +30,14 @@ from tests.shapes import random_panel
 from tests.thorough import cases
 
 SHOP = ShopSettings(returns=(30.0, 2.5), k_factor=0.4, fixings=(6.0, 400.0, 12.0))
+
+
+def earlier_places(folder: Path) -> Array:
+    """Where a rule that locks panels to a delivery holds them, mm."""
+    asked = FitSettings(rules=rules_of({"lock": [{"panels": "*", "delivery": str(folder)}]}))
+    rules = with_earlier(asked, fitted().reference).rules
+    assert rules is not None
+    return np.array(rules.plain()["lock"][0]["made"])
 
 
 @pytest.mark.parametrize(("ends", "side"), cases([("square", "outer")], [("bevel", "inner"), ("square", "outer")]))
@@ -36,6 +49,8 @@ def test_returns_are_part_of_everything_and_proved(tmp_path: Path, ends: str, si
     # Gaps are those of the fit, returns or none.
     assert report.certificate.max_seam_gap == pytest.approx(plain.certificate.max_seam_gap, abs=1e-6)
     assert report.certificate.overlap == 0.0
+    # Panels that are made already are the same, too, with returns or without.
+    assert earlier_places(tmp_path / "out") == pytest.approx(earlier_places(tmp_path / "plain"), abs=1e-6)
     allowance = 0.5 * math.pi * (2.5 + 0.4 * 3.0)
     for panel, was in zip(report.panels, plain.panels, strict=True):
         assert panel.returns == ("side 0", "side 1")

@@ -20,23 +20,25 @@ from cadpanel.geometry.biarcs import all_but_straight, arc_circle
 
 _UP = np.array([0.0, 0.0, 1.0])
 _ACROSS = np.array([1.0, 0.0, 0.0])
+NO_HOLES = np.empty((0, 3))
 # A corner of a panel and the vertex that was built there are nearer than this, mm.
 _SAME = 1e-6
 
 
-def flat_face(contour: Array, lines: Array) -> TopoDS_Compound:
+def flat_face(contour: Array, lines: Array, holes: Array = NO_HOLES) -> TopoDS_Compound:
     """A flat part in the plane z = 0: its face, seen from above, and lines on it.
 
     Args:
         contour: (v, 3) a closed chain of arcs, counterclockwise: the start of each in mm, and its bulge.
         lines: (m, 2, 2) ends of the lines, mm.
+        holes: (h, 3) middles and diameters of round holes in the face, mm.
     """
     corners = _in_space(contour[:, :2])
     vertices = [vertex_at(corner) for corner in corners]
     after = [*range(1, len(corners)), 0]
     loop = [_arc(vertices[i], vertices[j], corners[i], corners[j], float(contour[i, 2])) for i, j in enumerate(after)]
     plane = plane_surface(corners[0], _UP, _ACROSS)
-    drawn: list[TopoDS_Shape] = [face_on(plane.surface, plane.agrees, loop)]
+    drawn: list[TopoDS_Shape] = [face_on(plane.surface, plane.agrees, loop, [[_rim(hole)] for hole in holes])]
     for start, stop in zip(_in_space(lines[:, 0]), _in_space(lines[:, 1]), strict=True):
         drawn.append(line_edge(vertex_at(start), vertex_at(stop), start, stop))
     return compound_of(drawn)
@@ -64,6 +66,18 @@ def _along(skin: TopoDS_Shell, row: Array) -> list[TopoDS_Edge]:
             raise ValueError(f"the skin has no edge between {piece[0]} and {piece[1]}")
         found.append(edges[nearest])
     return found
+
+
+def rim_places(holes: Array) -> Array:
+    """(h, 3) where the rim of each hole (h, 3) begins and ends, mm."""
+    return _in_space(holes[:, :2] + np.multiply.outer(0.5 * holes[:, 2], _ACROSS[:2]))
+
+
+def _rim(hole: Array) -> TopoDS_Edge:
+    """The circle round a hole, clockwise from above, as the face lies outside of it."""
+    (start,) = rim_places(hole[None])
+    vertex = vertex_at(start)
+    return turned_edge(vertex, vertex, np.append(hole[:2], 0.0), start, -_UP, 2.0 * math.pi)
 
 
 def _arc(first: TopoDS_Vertex, last: TopoDS_Vertex, start: Array, stop: Array, bulge: float) -> TopoDS_Edge:

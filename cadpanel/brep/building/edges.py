@@ -82,19 +82,26 @@ def lay_on_surface(edge: TopoDS_Edge, curve: Geom2d_Curve, surface: Geom_Surface
     _BUILDER.UpdateEdge(edge, curve, surface, TopLoc_Location(), kernel.TOLERANCE)
 
 
-def face_on(surface: Geom_Surface, agrees: bool, loop: Sequence[TopoDS_Shape]) -> TopoDS_Face:
+def face_on(
+    surface: Geom_Surface,
+    agrees: bool,
+    loop: Sequence[TopoDS_Shape],
+    holes: Sequence[Sequence[TopoDS_Shape]] = (),
+) -> TopoDS_Face:
     """A face bounded by a loop of oriented edges that runs counterclockwise about the wanted normal.
 
-    `agrees` says whether the surface's own normal is the wanted one; otherwise the face comes out reversed.
+    `agrees` says whether the surface's own normal is the wanted one; otherwise the face comes out reversed. Loops round
+    holes run clockwise.
     """
-    wire = TopoDS_Wire()
-    _BUILDER.MakeWire(wire)
-    for edge in loop:
-        _BUILDER.Add(wire, edge)
-    wire.Closed(True)
     face = TopoDS_Face()
     _BUILDER.MakeFace(face, surface, kernel.TOLERANCE)
-    _BUILDER.Add(face, wire if agrees else wire.Reversed())
+    for edges in (loop, *holes):
+        wire = TopoDS_Wire()
+        _BUILDER.MakeWire(wire)
+        for edge in edges:
+            _BUILDER.Add(wire, edge)
+        wire.Closed(True)
+        _BUILDER.Add(face, wire if agrees else wire.Reversed())
     return face if agrees else TopoDS.Face_s(face.Reversed())
 
 

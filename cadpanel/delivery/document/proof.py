@@ -6,6 +6,7 @@ for byte. Shapes are held against the same volumes, areas and corners as those i
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -14,11 +15,13 @@ from zipfile import BadZipFile, ZipFile
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.drawn import rim_places
 from cadpanel.brep.proof.certificate import POSITION_LIMIT, VOLUME_LIMIT
 from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.brep.proof.parallel import inspect_archive
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.document.archive import DOCUMENT_XML, GUI_XML, xml_files
+from cadpanel.delivery.document.shapes import laid_out
 from cadpanel.delivery.document.tree import drawn_seams, flat_file, panel_file, seam_file, skin_file
 from cadpanel.delivery.records.report import PanelModel, SeamModel
 from cadpanel.errors import DeliveryError
@@ -51,8 +54,10 @@ def prove_document(path: Path, contents: Contents) -> Proof:
         corners = max(corners, *off)
         failures += [f"'{path.name}': panel '{panel.name}': {what}" for what in _panel_faults(panel, solid, skin, off)]
         reach = contents.shop.chord * sum(part.size.edges.values()) + _AREA_SHARE * part.size.area
-        if flat.faces != 1 or abs(flat.area - part.size.area) > reach:
+        area = part.size.area - 0.25 * math.pi * float(np.sum(part.circles[:, 2] ** 2))
+        if flat.faces != 1 or abs(flat.area - area) > reach:
             failures.append(f"'{path.name}': panel '{panel.name}': its flat pattern is not that of the report.")
+    failures += [f"'{path.name}': {what}" for what in _hole_faults(contents, facts)]
     failures += [f"'{path.name}': {what}" for what in _seam_faults(contents, facts)]
     numbers = {
         "panels": len(contents.records),
@@ -92,6 +97,18 @@ def _panel_faults(panel: PanelModel, solid: KeptFacts, skin: KeptFacts, off: tup
     for what, apart in zip(("solid", "skin"), off, strict=True):
         if apart > POSITION_LIMIT:
             yield f"a corner of its {what} is {apart:.3g} mm away from where it is expected."
+
+
+def _hole_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator[str]:
+    """The holes are less of a flat pattern than its arcs may miss of its area, so that each must be found."""
+    if not any(len(part.circles) for part in contents.parts):
+        return
+    for place, (panel, (contour, lines, holes)) in enumerate(zip(contents.records, laid_out(contents), strict=True)):
+        flat = facts.get(flat_file(place))
+        plane = np.concatenate([contour[:, :2], lines.reshape(-1, 2)])
+        wanted = np.concatenate([np.pad(plane, ((0, 0), (0, 1))), rim_places(holes)])
+        if flat is not None and _apart(flat.vertices, wanted) > POSITION_LIMIT:
+            yield f"panel '{panel.name}': the holes in its flat pattern are not those of the report."
 
 
 def _seam_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator[str]:

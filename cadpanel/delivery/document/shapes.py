@@ -33,15 +33,15 @@ def shape_files(contents: Contents, panels: Sequence[PanelSheet]) -> Iterator[tu
         yield seam_file(number), brep_text(edges_along(rows))
     for place, panel in enumerate(panels):
         yield skin_file(place), brep_text(panel.skin)
-    for place, (contour, lines) in enumerate(laid_out(contents)):
-        yield flat_file(place), brep_text(flat_face(contour, lines))
+    for place, flat in enumerate(laid_out(contents)):
+        yield flat_file(place), brep_text(flat_face(*flat))
 
 
-def laid_out(contents: Contents) -> list[tuple[Array, Array]]:
-    """The contour (v, 3) of each flat pattern and its bend lines (m, 2, 2), in rows from the top."""
+def laid_out(contents: Contents) -> list[tuple[Array, Array, Array]]:
+    """Of each flat pattern the contour (v, 3), bend lines (m, 2, 2) and holes (h, 3), in rows from the top."""
     chains = contours(contents.parts, contents.shop.chord)
     drawings: list[Drawing] = [(Contour("", chain),) for chain in chains]
     return [
-        (chain + np.append(shift, 0.0), bend_lines(part) + shift)
+        (chain + np.append(shift, 0.0), bend_lines(part) + shift, part.circles + np.append(shift, 0.0))
         for chain, part, shift in zip(chains, contents.parts, in_rows(drawings), strict=True)
     ]

@@ -22,7 +22,6 @@ class ReportHtml(Output):
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
-        from cadpanel.delivery.page.flats import packed_flats
         from cadpanel.delivery.page.html import page_bytes
         from cadpanel.delivery.page.numbers import page_numbers
         from cadpanel.delivery.page.packing import packed
@@ -31,7 +30,7 @@ class ReportHtml(Output):
         assert delivery.result is not None
         panels = delivery.panels
         scene = scene_of(delivery.result, [panel.shape for panel in panels], [panel.other for panel in panels])
-        shapes = {**packed(scene), "flats": packed_flats([part.pattern for part in delivery.parts])}
+        shapes = {**packed(scene), "flats": _flats(delivery)}
         page = page_bytes(delivery.title, page_numbers(delivery), shapes)
         try:
             (folder / PAGE).write_bytes(page)
@@ -40,6 +39,7 @@ class ReportHtml(Output):
 
     def prove(self, folder: Path, contents: Contents) -> Proof:
         """Its numbers must be the report's; what it shows of seams may not exceed them, and every panel is there."""
+        from cadpanel.delivery.page.flats import like_flats
         from cadpanel.delivery.page.html import read_page
         from cadpanel.delivery.page.numbers import page_numbers
 
@@ -47,8 +47,17 @@ class ReportHtml(Output):
         failures = []
         if numbers != page_numbers(contents):
             failures.append(f"'{PAGE}' does not tell the report's numbers.")
+        if not like_flats(shapes.get("flats"), _flats(contents)):
+            failures.append(f"'{PAGE}' does not show the flat patterns of the report.")
         failures += _unlike(shapes, contents)
         return Proof(numbers={"panels": len(contents.records)}, failures=tuple(failures))
+
+
+def _flats(contents: Contents) -> list[dict[str, Any]]:
+    from cadpanel.delivery.page.flats import packed_flats
+
+    parts = contents.parts
+    return packed_flats([part.pattern for part in parts], [part.circles for part in parts])
 
 
 def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:

@@ -28,12 +28,39 @@ def flat_lines(pattern: FlatPattern) -> tuple[Array, Array]:
     return outline, np.concatenate([pattern.tangents, *middles])
 
 
-def packed_flats(patterns: Sequence[FlatPattern]) -> list[dict[str, Any]]:
-    """The same as JSON holds it: x and y in turn."""
-    return [
+def packed_flats(patterns: Sequence[FlatPattern], circles: Sequence[Array] = ()) -> list[dict[str, Any]]:
+    """The same as JSON holds it: x and y in turn, of holes (h, 3) their diameters, too."""
+    packed = [
         {"outline": _whole(outline), "bends": [_whole(line) for line in bends]}
         for outline, bends in map(flat_lines, patterns)
     ]
+    for flat, own in zip(packed, circles, strict=False):
+        if len(own):
+            flat["holes"] = _whole(own)
+    return packed
+
+
+def like_flats(shown: object, wanted: Sequence[dict[str, Any]]) -> bool:
+    """Whether what a page holds are these flat patterns; a number just between two may be rounded to either."""
+    if not isinstance(shown, list) or len(shown) != len(wanted):
+        return False
+    return all(
+        isinstance(one, dict) and one.keys() == other.keys() and all(_near(one[key], other[key]) for key in other)
+        for one, other in zip(shown, wanted, strict=True)
+    )
+
+
+def _near(shown: object, wanted: list[Any]) -> bool:
+    rows = [[row] if isinstance(row, int) else row for row in wanted]
+    if not isinstance(shown, list) or len(shown) != len(rows):
+        return False
+    for row, other in zip(shown, rows, strict=True):
+        own = [row] if isinstance(row, int) else row
+        if not isinstance(own, list) or len(own) != len(other) or not all(isinstance(value, int) for value in own):
+            return False
+        if any(abs(one - two) > 1 for one, two in zip(own, other, strict=True)):
+            return False
+    return True
 
 
 def _whole(points: Array) -> list[int]:

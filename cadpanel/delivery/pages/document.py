@@ -14,7 +14,7 @@ from cadpanel.delivery.pages.flat_view import draw_flat
 from cadpanel.delivery.pages.folded_view import draw_folded, panel_view
 from cadpanel.delivery.pages.overview import draw_overview
 from cadpanel.delivery.pages.paper import HEIGHT, MARGIN, WIDTH, Box, Paper
-from cadpanel.delivery.pages.tables import BENDS, EDGES, bend_rows, draw_block, draw_table, edge_rows
+from cadpanel.delivery.pages.tables import BENDS, EDGES, bend_rows, draw_block, draw_table, edge_rows, fixing_rows
 from cadpanel.delivery.part_data import part_number
 from cadpanel.delivery.sheets import PanelSheet
 
@@ -78,6 +78,7 @@ def _panel_page(paper: Paper, contents: Contents, sheets: Sequence[PanelSheet], 
         ("blank", f"{blank.width:.1f} x {blank.height:.1f} mm, {blank.area * 1e-6:.4f} m2"),
         ("mass", "" if record.mass is None else f"{record.mass:.2f} kg"),
         ("stock sheet", blank.stock or "-"),
+        *fixing_rows(part),
         ("drawing", f"{blank.file}.dxf"),
         *_of_all(contents, date),
         ("scale", f"1 : {round(1.0 / scale)}"),

@@ -35,6 +35,8 @@ def draw_flat(paper: Paper, part: FlatPart, neighbours: Mapping[str, str], box: 
     paper.contour(np.concatenate(on_paper))
     for line in bend_lines(part):
         paper.lines(scale * line + shift, width=0.13, dashed=True)
+    for x, y, diameter in part.circles.tolist():
+        paper.circle(scale * np.array([x, y]) + shift, 0.5 * scale * diameter)
     _dimension_pieces(paper, part, on_paper)
     _overall(paper, scale * low + shift, scale * high + shift, high - low)
     _say(paper, part, neighbours, on_paper, scale * part.pattern.curves.start.mean(axis=0) + shift)

@@ -103,6 +103,13 @@ class Paper:
         """A closed chain of lines through points (n, 2), filled if a colour is given."""
         self._draw(points, close=True, width=width, fill=fill)
 
+    def circle(self, middle: Array, radius: float, *, width: float = 0.18) -> None:
+        """A circle about a point (2,)."""
+        self._canvas.setLineWidth(width * POINT)
+        self._canvas.setDash([])
+        self._canvas.setStrokeGray(0.0)
+        self._canvas.circle(float(middle[0]) * POINT, float(middle[1]) * POINT, radius * POINT, stroke=1, fill=0)
+
     def area(self, points: Array, colour: tuple[float, float, float]) -> None:
         """A filled area with points (n, 2) round it, and a hair more, so that neighbours leave no gap."""
         self._draw(points, close=True, width=0.15, fill=colour, stroke=colour)

@@ -9,7 +9,7 @@ from pypdf.errors import PyPdfError
 
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.pages.paper import shown
-from cadpanel.delivery.pages.tables import bend_rows
+from cadpanel.delivery.pages.tables import bend_rows, fixing_rows
 from cadpanel.errors import DeliveryError
 
 
@@ -44,6 +44,7 @@ def prove_pages(path: Path, contents: Contents) -> Proof:
         numbers = [f"{part.blank.width:.1f} x {part.blank.height:.1f} mm"]
         numbers += [f"{length:.1f}" for length in part.size.edges.values()]
         numbers += ["".join(row) for row in bend_rows(part.bends)]
+        numbers += ["".join(row) for row in fixing_rows(part)]
         missing = [words for words in (panel.name, *numbers) if _plain(words) not in text]
         if missing:
             failures.append(f"'{path.name}': the page of panel '{panel.name}' does not say '{missing[0]}'.")

@@ -46,6 +46,13 @@ def edge_rows(part: FlatPart, neighbours: Mapping[str, str]) -> list[tuple[str, 
     return rows
 
 
+def fixing_rows(part: FlatPart) -> list[tuple[str, str]]:
+    """How many holes a part has, of which diameter; nothing where none are asked for."""
+    if part.fixings is None:
+        return []
+    return [("fixing holes", f"{len(part.circles)} of {part.fixings.rule.diameter:g} mm")]
+
+
 def draw_table(
     paper: Paper, headings: Sequence[str], rows: Sequence[Sequence[str]], left: float, top: float
 ) -> tuple[float, float]:

@@ -19,11 +19,13 @@ class PanelDifference(Record):
         before: its name in the earlier delivery; None where it is new.
         status: "same", or "renamed" where only its name differs; "moved" where the part is the same and hangs
             elsewhere; "changed" where the part is another one; "new" or "gone" where one delivery has no such panel.
-        cut_again: whether its blank must be cut again: it is new, or another sheet or contour.
+        cut_again: whether its blank must be cut again: it is new, or another sheet, contour or
+            hole.
         bend_again: whether it must be bent otherwise: other radii or sweeps, or bends elsewhere on the blank.
         moved: how far its farthest corner went, in the model's coordinates; None where corners do not correspond.
         contour: how far the farthest place of the flat contour lies from the old one, laid upon it; the same.
         bend_lines: the same for the lines of its bends.
+        holes: the same for the middles of its holes; None also where they are others in number or diameter.
         radius: largest difference of an inner radius; None where bends do not correspond, as are the next ones.
         sweep: largest difference of a sweep.
         bevel: largest difference of an edge's bevel.
@@ -40,6 +42,7 @@ class PanelDifference(Record):
     moved: NonNegative | None = None
     contour: NonNegative | None = None
     bend_lines: NonNegative | None = None
+    holes: NonNegative | None = None
     radius: NonNegative | None = None
     sweep: NonNegative | None = None
     bevel: NonNegative | None = None

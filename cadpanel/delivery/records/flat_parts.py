@@ -56,6 +56,14 @@ class FlatPart:
     fixings: PanelFixings | None = None
 
     @property
+    def circles(self) -> Array:
+        """(h, 3) its holes on the pattern: their middles and diameters, mm."""
+        if self.fixings is None:
+            return np.empty((0, 3))
+        middles = self.fixings.middles
+        return np.column_stack([middles, np.full(len(middles), self.fixings.rule.diameter)])
+
+    @property
     def holes(self) -> tuple[FixingModel, ...]:
         """What the report says of its holes."""
         if self.fixings is None:

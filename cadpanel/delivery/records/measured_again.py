@@ -75,6 +75,7 @@ def _of_panels(found: Measures) -> Mapping[str, Array]:
         "max_corner_drift": found.drift,
         "max_drift_along": found.drift_along,
         "max_free_edge_drift": found.drift_across,
+        "outline_drift": found.outline_drift,
     }
 
 
@@ -93,7 +94,7 @@ def _of_seams(found: Measures, reference: Reference) -> Mapping[str, Array]:
 def _unlike(name: str, stated: Record, found: Mapping[str, float | None], moved: float) -> Iterator[str]:
     for key, number in found.items():
         told = getattr(stated, key)
-        if told is None and (number is None or key not in stated.model_fields_set):
-            continue  # nothing to tell, or a report from before it was told
+        if key not in stated.model_fields_set or (told is None and number is None):
+            continue  # a report from before it was told, or nothing to tell
         if told is None or number is None or not abs(told - number) <= SAME + moved:
             yield f"{name}: the report's {key} is {told}, {number} is measured on the reference."

@@ -81,6 +81,19 @@ def unfolded_rulings(panel: PanelModel) -> tuple[int, int]:
     return first, len(panel.corners[0]) - last
 
 
+def fitted_patches(panel: PanelModel) -> tuple[PatchModel, ...]:
+    """The patches of a panel as it was fitted, without those of its returns."""
+    own = slice(*unfolded_rulings(panel))
+    return panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
+
+
+def unfolded(panel: PanelModel) -> PanelModel:
+    """The record of a panel as it was built, but for its returns."""
+    own = slice(*unfolded_rulings(panel))
+    rows = {"corners": tuple(r[own] for r in panel.corners), "other_face": tuple(r[own] for r in panel.other_face)}
+    return panel.model_copy(update={**rows, "patches": fitted_patches(panel), "returns": ()})
+
+
 def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
     """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
 
@@ -93,12 +106,11 @@ def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
     """
     if panel.fitted is None:
         return recorded_shape(panel, depth)
-    own = slice(*unfolded_rulings(panel))
-    moves = (np.array(panel.other_face) - np.array(panel.corners))[:, own]
+    own = unfolded(panel)
+    moves = np.array(own.other_face) - np.array(own.corners)
     other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
-    patches = panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
-    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other, "patches": patches}
-    return recorded_shape(panel.model_copy(update=uncut), depth)
+    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other}
+    return recorded_shape(own.model_copy(update=uncut), depth)
 
 
 def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:

@@ -7,7 +7,16 @@ from cadpanel.delivery.schedule.csv_text import Row
 
 HEADINGS = (
     *("panel", "before", "status", "cut again", "bend again", "corners moved mm", "contour mm", "bend lines mm"),
-    *("inner radius mm", "sweep deg", "bevel deg", "blank area mm2", "mass kg", "feature before", "feature now"),
+    *(
+        "holes mm",
+        "inner radius mm",
+        "sweep deg",
+        "bevel deg",
+        "blank area mm2",
+        "mass kg",
+        "feature before",
+        "feature now",
+    ),
 )
 
 
@@ -15,7 +24,8 @@ def difference_rows(found: DifferenceModel) -> list[Row]:
     """One row a panel under headings."""
     rows: list[Row] = [HEADINGS]
     for panel in found.panels:
-        lengths = (panel.moved, panel.contour, panel.bend_lines, panel.radius, panel.sweep, panel.bevel, panel.area)
+        flat = (panel.contour, panel.bend_lines, panel.holes)
+        lengths = (panel.moved, *flat, panel.radius, panel.sweep, panel.bevel, panel.area)
         rows.append(
             (
                 *(panel.name, panel.before, panel.status, _yes(panel.cut_again), _yes(panel.bend_again)),

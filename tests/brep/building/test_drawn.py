@@ -38,6 +38,17 @@ def test_contours_that_bulge_in_and_out_have_the_area_of_their_arcs() -> None:
     assert len(edges_of(face)) == len(contour)
 
 
+def test_holes_are_taken_out_of_a_flat_face() -> None:
+    contour = np.array([[0, 0, 0.0], [1000, 0, 0.1], [1000, 500, 0.0], [0, 500, 0.0]], dtype=float)
+    holes = np.array([[40.0, 50.0, 13.0], [900.0, 400.0, 30.0]])
+    shape = flat_face(contour, NO_LINES, holes)
+    (face,) = faces_of(shape)
+    wanted = arc_contour_area(contour) - 0.25 * math.pi * (13.0**2 + 30.0**2)
+    assert areas_and_centroids([face])[0] == pytest.approx(wanted, rel=1e-9)
+    assert inspect("part", shape).valid
+    assert len(edges_of(face)) == len(contour) + len(holes)
+
+
 def test_edges_of_skins_are_found_along_their_corners() -> None:
     chain = random_shapes(feature("plane-cone-plane"), 1, 1)[0]
     polygon = random_polygon(1, 5)

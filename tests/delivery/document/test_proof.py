@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from cadpanel.arrays import Array
 from cadpanel.brep.building.drawn import flat_face
 from cadpanel.brep.kernel.shapes import brep_text
 from cadpanel.delivery.contents import Contents
@@ -30,8 +31,13 @@ Files = dict[str, bytes]
 
 @pytest.fixture(scope="module")
 def delivery() -> Delivery:
-    result, sheet, shop = fitted(), SheetSettings(), ShopSettings()
-    built = build_panels(result.shapes, sheet, result.reference.seams)
+    return told_of(ShopSettings())
+
+
+def told_of(shop: ShopSettings) -> Delivery:
+    """The strip as a shop has it made."""
+    result, sheet = fitted(), SheetSettings()
+    built = build_panels(result.shapes, sheet, result.reference.seams, shop=shop)
     parts = flat_parts([panel.shape for panel in built.panels], sheet, shop)
     records = with_flat_parts(panel_records(result, built), built.panels, parts, shop.density)
     return Delivery(
@@ -181,7 +187,22 @@ def test_strips_and_features_are_groups(delivery: Delivery) -> None:
 
 
 def test_flat_patterns_do_not_lie_on_each_other(delivery: Contents) -> None:
-    boxes = [(contour[:, :2].min(axis=0), contour[:, :2].max(axis=0)) for contour, _ in laid_out(delivery)]
+    boxes = [(contour[:, :2].min(axis=0), contour[:, :2].max(axis=0)) for contour, *_ in laid_out(delivery)]
     for i, (low, high) in enumerate(boxes):
         assert all((high < others_low).any() or (low > others_high).any() for others_low, others_high in boxes[:i])
     assert brep_text(flat_face(*laid_out(delivery)[0])).startswith(b"\nCASCADE Topology V1")
+
+
+def test_holes_are_in_flat_patterns_and_each_of_them_is_missed(tmp_path: Path) -> None:
+    drilled = told_of(ShopSettings(fixings=(6.5, 450.0, 40.0)))
+    written = archive_bytes(drilled, shape_files(drilled, drilled.panels))
+    assert prove_document(changed(written, tmp_path, lambda _: None), drilled).failures == ()
+    contour, lines, holes = laid_out(drilled)[1]
+    assert len(holes) > 10
+    for other in (holes[1:], holes + [[0.001, 0.0, 0.0]] * (holes[:, :1] == holes[0, 0])):
+
+        def change(files: Files, other: Array = other) -> None:
+            files[flat_file(1)] = brep_text(flat_face(contour, lines, other))
+
+        failures = prove_document(changed(written, tmp_path, change), drilled).failures
+        assert failures == ("'panels.FCStd': panel 'N 2': the holes in its flat pattern are not those of the report.",)

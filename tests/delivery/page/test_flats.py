@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cadpanel.delivery.page.flats import flat_lines, packed_flats
+from cadpanel.delivery.page.flats import flat_lines, like_flats, packed_flats
 from tests.pages import delivery
 
 
@@ -22,3 +22,17 @@ def test_text_is_in_tenths_of_a_millimetre():
     (packed,) = packed_flats([part.pattern])
     outline, _ = flat_lines(part.pattern)
     assert np.reshape(packed["outline"], (-1, 2)) / 10.0 == pytest.approx(outline, abs=0.051)
+
+
+def test_holes_are_shown_and_a_page_that_has_others_is_told_from_it():
+    pattern = delivery().parts[0].pattern
+    holes = np.array([[100.0, 50.0, 6.5], [200.0, 50.0, 6.5]])
+    drilled, whole = packed_flats([pattern], [holes]), packed_flats([pattern], [holes[:0]])
+    assert drilled[0]["holes"] == [1000, 500, 65, 2000, 500, 65]
+    assert "holes" not in whole[0]
+    assert like_flats(drilled, drilled)
+    assert like_flats(packed_flats([pattern], [holes + 0.06]), drilled)  # rounded otherwise
+    for other in (whole, packed_flats([pattern], [holes[1:]]), packed_flats([pattern], [holes + 0.2]), None, [None]):
+        assert not like_flats(other, drilled)
+    assert not like_flats(drilled, whole)
+    assert not like_flats([{**drilled[0], "holes": ["1000", 500, 65, 2000, 500, 65]}], drilled)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from pypdf import PdfReader
 
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.outputs.drawings_pdf import DRAWINGS
@@ -16,7 +18,7 @@ from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError
 from tests.delivered import fitted
 
-SHOP = ShopSettings(outputs="pdf", mesh_chord=5.0, material="EN AW-5754", author="N. N.")
+SHOP = ShopSettings(outputs="pdf", mesh_chord=5.0, material="EN AW-5754", author="N. N.", fixings=(6.5, 450.0, 40.0))
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +41,13 @@ def test_every_panel_has_a_page_with_its_numbers(delivery: tuple[Path, ReportMod
         assert f"{panel.bends[0].radius[0]:.1f}-{panel.bends[0].radius[1]:.1f}" in text
         for words in ("thisfaceout", "EN AW-5754".replace(" ", ""), "N.N.", f"{panel.mass:.2f}kg", "scale"):
             assert words in text
+        assert f"fixingholes{len(panel.fixings)}of6.5mm" in text
     assert "end1:N2" in pages[0]
+    for page, panel in zip(PdfReader(out / DRAWINGS).pages[1:], report.panels, strict=True):
+        contents = page.get_contents()
+        assert contents is not None
+        # Nothing but circles is round on a page, and each of them is four curves.
+        assert len(re.findall(rb"(?<=\d) c\b", contents.get_data())) == 4 * len(panel.fixings) > 0
 
 
 def test_the_same_delivery_gives_the_same_bytes_at_the_same_date(

@@ -20,6 +20,7 @@ OF_PANELS = (
     "max_corner_drift",
     "max_drift_along",
     "max_free_edge_drift",
+    "outline_drift",
 )
 OF_SEAMS = ("width", "step", "shift", "turn", "unevenness", "max_kink")
 

@@ -4,12 +4,15 @@ function flatDrawing(panel) {
   const pairs = (row) => Array.from({ length: row.length / 2 }, (_, i) => [row[2 * i] / 10, -row[2 * i + 1] / 10]);
   let outline = pairs(panel.flat.outline);
   let bends = panel.flat.bends.map(pairs);
+  const triples = panel.flat.holes ?? [];
+  let holes = Array.from({ length: triples.length / 3 }, (_, i) => [triples[3 * i] / 10, -triples[3 * i + 1] / 10]);
   const span = (points, x) => Math.max(...points.map((p) => p[x])) - Math.min(...points.map((p) => p[x]));
   if (span(outline, 1) > span(outline, 0)) {
     // Lying down it takes less of the column.
     const turned = (point) => [-point[1], point[0]];
     outline = outline.map(turned);
     bends = bends.map((line) => line.map(turned));
+    holes = holes.map(turned);
   }
   const low = [0, 1].map((x) => Math.min(...outline.map((p) => p[x])));
   const size = [span(outline, 0), span(outline, 1)];
@@ -26,6 +29,7 @@ function flatDrawing(panel) {
     },
     drawn("path", { ...thin, d: `${path(outline)}Z`, fill: "#eef3f8", stroke: "#1c2733", "stroke-width": 1.2 }),
     ...bends.map((line) => drawn("path", { ...thin, d: path(line), stroke: "#0b5cad", "stroke-width": 1, "stroke-dasharray": "5 4" })),
+    ...holes.map(([cx, cy], i) => drawn("circle", { ...thin, cx: cx.toFixed(1), cy: cy.toFixed(1), r: (triples[3 * i + 2] / 20).toFixed(2), stroke: "#1c2733", "stroke-width": 1 })),
   );
 }
 

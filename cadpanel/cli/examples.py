@@ -9,7 +9,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "cadpanel fit fixtures/kai_tak_nw.step --divide auto --max-deviation 25 --gap-tolerance 5 --out build/nw_few",
     ),
     "compare": ("cadpanel compare fixtures/kai_tak_nw.step --out build/nw_compared",),
-    "study": ("cadpanel study fixtures/kai_tak_nw.step --gap 1,2,5,10,20 --divide 9,12 --out build/nw_study",),
+    "study": ("cadpanel study fixtures/kai_tak_nw.step --gap 1,3,10 --divide 9,12 --out build/nw_study",),
     "verify": ("cadpanel verify build/kai_tak_nw --reference fixtures/kai_tak_nw.step",),
     "diff": ("cadpanel diff build/kai_tak_nw build/nw_joint",),
     "view": ("cadpanel view build/kai_tak_nw --png build/edge.png --color step --from outside",),

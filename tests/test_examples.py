@@ -105,7 +105,7 @@ def test_the_rules_on_the_pages_are_rules() -> None:
 def test_an_example_runs_and_writes_step(example: Path, workplace: Path) -> None:
     out = workplace / "out"
     said = run([sys.executable, str(example), "fixtures/kai_tak_nw.step", str(out)], workplace)
-    assert "NW-01" in said
+    assert re.search("NW-0[1-8]", said)
     assert list(out.glob("*.step"))
 
 

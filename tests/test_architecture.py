@@ -204,8 +204,6 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.proof.shape_facts": "tests/brep/proof/test_certificate.py",
     "cadpanel.brep.server": "tests/brep/test_read.py",
     "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
-    "cadpanel.cli.steps": "tests/cli/test_fit.py",
-    "cadpanel.brep.step.products": "tests/brep/step/test_file.py",
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -14,6 +13,7 @@ from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.interrupt import first_interrupt_ends
+from cadpanel.cli.printable import complain
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.chosen_panels import chosen_panels, names_along
 from cadpanel.delivery.folder import delivery_folder
@@ -73,7 +73,7 @@ def fit(
 
         print_report(report, out, time.perf_counter() - began)
     if shortfall is not None:
-        sys.stderr.write(f"{shortfall}.\n")
+        complain(f"{shortfall}.\n")
         raise typer.Exit(1)
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
+import tempfile
+import traceback
 import warnings
 from collections.abc import Callable, Sequence
 from importlib.metadata import version
@@ -20,6 +23,7 @@ from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
 from cadpanel.cli.inspect import inspect
+from cadpanel.cli.printable import complain, forgive_encodings
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
 from cadpanel.cli.view import view
@@ -29,6 +33,8 @@ EXIT_NOT_HELD = 1
 """The command ran, but a tolerance or a proof does not hold."""
 EXIT_REFUSED = 2
 """The input, a setting or the output folder was refused."""
+EXIT_UNFORESEEN = 3
+"""Something has stopped the program that nobody foresaw; its details are in a file."""
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
@@ -58,6 +64,9 @@ def cadpanel(
         raise SettingsError("the folder that this was started in no longer exists: change to another one") from None
 
 
+MOST_SAID = 200
+"""Characters of an error that was not foreseen, in its sentence; the rest is in the file."""
+
 for command in COMMANDS:
     app.command(epilog=epilog(command.__name__))(command)
 app.add_typer(freecad)
@@ -71,8 +80,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns:
         The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
-        sentence on stderr; 130 interrupted; 143 killed.
+        sentence on stderr; 3 something that was not foreseen; 130 interrupted; 143 killed.
     """
+    forgive_encodings()
     for gone in _goodbyes():
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored
             signal.signal(gone, _stop)
@@ -85,7 +95,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         message = error.format_message().replace("Value error, ", "").rstrip(".")
         return _refuse(f"{message} (see 'cadpanel --help').")
     except ProofError as error:
-        sys.stderr.write("\n".join(("The proof does not hold, and nothing was written:", *error.failures, "")))
+        complain("\n".join(("The proof does not hold, and nothing was written:", *error.failures, "")))
         return EXIT_NOT_HELD
     except CadpanelError as error:
         return _refuse(str(error))
@@ -96,10 +106,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(error.__cause__, SystemExit):
             return EXIT_TERMINATED
         if not isinstance(error.__cause__, KeyboardInterrupt):
-            raise
+            return _unexpected(error)
         status = EXIT_INTERRUPTED
+    except Exception as error:  # noqa: BLE001 - the last resort: whoever sits there is told where the details are
+        return _unexpected(error)
     if status == EXIT_INTERRUPTED:
-        sys.stderr.write("Interrupted.\n")
+        complain("Interrupted.\n")
     return status if isinstance(status, int) else 0
 
 
@@ -112,8 +124,22 @@ def _goodbyes() -> tuple[signal.Signals, ...]:
 def _refuse(sentence: str) -> int:
     """Say it as one sentence on one line, however it was wrapped."""
     words = " ".join(sentence.split()).rstrip(".")
-    sys.stderr.write(f"{words[:1].upper()}{words[1:]}.\n")
+    complain(f"{words[:1].upper()}{words[1:]}.\n")
     return EXIT_REFUSED
+
+
+def _unexpected(error: Exception) -> int:
+    """Say in one sentence that an error was not foreseen, and in which file its details are."""
+    handle, name = tempfile.mkstemp(prefix="cadpanel-error-", suffix=".txt", text=True)
+    with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+        file.write(f"cadpanel {version('cadpanel')}, {sys.platform}, Python {sys.version}\n")
+        file.write("".join(traceback.format_exception(error)))
+    said = " ".join(str(error).split())[:MOST_SAID]
+    complain(
+        f"Something that was not foreseen has stopped this ({type(error).__name__}{f': {said}' if said else ''}): the "
+        f"details are in '{name}'; please send that file to those who make cadpanel.\n"
+    )
+    return EXIT_UNFORESEEN
 
 
 def _stop(_signal: int, _frame: object) -> NoReturn:

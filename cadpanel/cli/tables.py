@@ -11,10 +11,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cadpanel.cli.printable import PrintableConsole
 from cadpanel.delivery.outputs.report_html import PAGE
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.comparison import ComparisonModel
-from cadpanel.delivery.records.report import CertificateModel, ReportModel, SummaryModel, TimingModel
+from cadpanel.delivery.records.report import ReportModel, SummaryModel
 from cadpanel.delivery.records.settings import ComparisonSettingsModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -85,7 +87,7 @@ def multiple(value: float | None) -> str:
 def console() -> Console:
     """Standard output; a file or a pipe gets lines wide enough for the tables."""
     own_width = sys.stdout.isatty() or "COLUMNS" in os.environ
-    return Console(highlight=False, width=None if own_width else 120)
+    return PrintableConsole(None if own_width else 120)
 
 
 def print_report(report: ReportModel, folder: Path, took: float) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +9,7 @@ import typer
 
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
+from cadpanel.cli.printable import complain
 from cadpanel.cli.steps import steps
 
 
@@ -40,7 +40,7 @@ def verify(
         if not found.report.summary.tolerance_met:
             console().print("Note: the report says that its tolerance is not met.")
     if not found.holds:
-        sys.stderr.write("\n".join(("The proof does not hold:", *found.failures, "")))
+        complain("\n".join(("The proof does not hold:", *found.failures, "")))
         raise typer.Exit(1)
     if not quiet:
         console().print("Everything holds.")

@@ -15,6 +15,7 @@ from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
 from cadpanel.delivery.outputs.step_files import SKINS
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.from_fit import (
     baselines_record,
@@ -26,7 +27,7 @@ from cadpanel.delivery.records.from_fit import (
     solve_record,
     with_flat_parts,
 )
-from cadpanel.delivery.records.report import CertificateModel, ReportModel, TimingModel, write_report
+from cadpanel.delivery.records.report import ReportModel, write_report
 from cadpanel.delivery.records.settings import settings_record
 from cadpanel.delivery.records.summary import summary
 from cadpanel.delivery.settings import SheetSettings

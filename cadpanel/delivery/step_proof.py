@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,12 +15,14 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sh
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.step.frame_checks import frame_faults
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.part_data import skin_data, solid_data
+from cadpanel.delivery.records.certified import CertificateModel, ClearModel
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
-from cadpanel.delivery.records.report import CertificateModel, ClearModel, PanelModel, SeamModel
+from cadpanel.delivery.records.report import PanelModel, SeamModel
 from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
 from cadpanel.geometry.sheet_checks import sheet_depth
 
@@ -81,7 +83,19 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     wanted = [_expected_seam(contents.seams[place], moved) for place in there]
     certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint)
     found = dict(zip(there, certificate.clear, strict=True)) if certificate.clear else {}
-    return Proved(certificate=_record(certificate), seams=_with_joints(contents.seams, found))
+    record = _record(certificate)
+    record = record.model_copy(update={"failures": (*record.failures, *_frame_faults(folder, contents))})
+    return Proved(certificate=record, seams=_with_joints(contents.seams, found))
+
+
+def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
+    """What both files say around their geometry, and are not to say."""
+    for file, what, data in ((PANELS, "panels", solid_data(contents)), (SKINS, "skins", skin_data(contents))):
+        parts = [
+            (panel.name if said is None else said.number, panel.name)
+            for panel, said in zip(contents.records, data, strict=True)
+        ]
+        yield from frame_faults(folder / file, f"{contents.title} {what}", parts, contents.sheet.schema)
 
 
 def _expected_flat(part: FlatPart, depth: float) -> ExpectedFlat:

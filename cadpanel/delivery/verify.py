@@ -14,11 +14,12 @@ from cadpanel.delivery.manifest import MANIFEST, changed_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.certified import CertificateModel
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.measured_again import measured_faults, reading_again
 from cadpanel.delivery.records.part_checks import part_faults
-from cadpanel.delivery.records.report import CertificateModel, ReportModel, read_report
+from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps

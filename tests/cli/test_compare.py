@@ -14,7 +14,7 @@ from tests.cli.conftest import Run
 def test_four_columns_are_written_and_printed(run: Run, lip_step: Path, tmp_path: Path) -> None:
     answer = run("compare", lip_step, "--out", tmp_path / "out", "--gap-tolerance", "2")
     assert answer.code == 0, answer.err
-    assert [path.name for path in (tmp_path / "out").iterdir()] == ["compare.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["compare.json", "manifest.json"]
     comparison = read_comparison(tmp_path / "out" / "compare.json")
     assert comparison.seams == (("N-01", "N-02"), ("N-02", "N-03"))
     assert [(column.method, column.feature) for column in comparison.columns] == [

@@ -12,6 +12,7 @@ from cadpanel.studies import fewest_panels
 from tests.cli.conftest import Run
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip
+from tests.thorough import thorough
 
 LIP = Lip(length=6000.0, twist=1.0, taper=0.02, flange=500.0, radius=300.0)
 
@@ -154,6 +155,7 @@ def test_as_few_panels_as_hold_everything_are_found_and_what_was_tried_is_told(
     assert run("verify", tmp_path / "out").code == 0
 
 
+@thorough
 def test_where_no_number_of_panels_holds_the_best_is_delivered_and_said(
     run: Run, strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

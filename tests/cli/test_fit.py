@@ -301,10 +301,14 @@ def test_an_existing_folder_is_refused_before_the_reference_is_read(run: Run, tm
 
 
 def test_overwrite_replaces_a_delivery(run: Run, lip_step: Path, delivery: Path) -> None:
-    (delivery / "panels.step").write_text("old")
+    (delivery / "panels.step").write_text("my own")
+    answer = run("fit", lip_step, "--out", delivery, "--overwrite", "--quiet")
+    assert answer.code == 2
+    assert "was changed since cadpanel wrote it" in answer.err
+    (delivery / "panels.step").unlink()
     answer = run("fit", lip_step, "--out", delivery, "--overwrite", "--quiet")
     assert answer.code == 0, answer.err
-    assert (delivery / "panels.step").read_text(encoding="ascii") != "old"
+    assert (delivery / "panels.step").is_file()
 
 
 def test_overwrite_does_not_delete_the_reference_that_lies_in_the_delivery(

@@ -79,12 +79,16 @@ def test_a_polite_kill_unwinds_as_an_interrupt_does(run: Callable[..., int]) -> 
     assert cleaned_up
 
 
-def test_a_programming_fault_is_not_hidden(run: Callable[..., int]) -> None:
+def test_a_programming_fault_is_not_hidden(
+    run: Callable[..., int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def work() -> None:
         raise ZeroDivisionError
 
-    with pytest.raises(ZeroDivisionError):
-        run(work)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    assert run(work) == 3
+    (file,) = tmp_path.iterdir()
+    assert "in work\n" in file.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("arguments", [[], ["--nonsense"], ["nonsense"], ["nonsense", "--out"]])

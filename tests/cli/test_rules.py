@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from cadpanel.delivery.records.certified import ClearModel
 from cadpanel.delivery.records.consistency import check_report
-from cadpanel.delivery.records.report import ClearModel, read_report
+from cadpanel.delivery.records.report import read_report
 from cadpanel.fitting.rules.book import rules_of
 from tests.cli.conftest import Run
 

@@ -23,7 +23,7 @@ def written(lip_step: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_folder_holds_the_same_rows_as_json_and_as_a_table(written: Path) -> None:
-    assert {path.name for path in written.iterdir()} == {"study.json", "study.csv"} | PLOTS
+    assert {path.name for path in written.iterdir()} == {"study.json", "study.csv", "manifest.json"} | PLOTS
     study = read_study(written / "study.json")
     assert [(row.feature, row.gap_tolerance) for row in study.rows] == [
         (feature, gap) for feature in ("plane-cone-plane", "cylinder") for gap in (0.5, 2.0, 8.0, 20.0)
@@ -65,7 +65,7 @@ def test_without_the_library_that_draws_the_rest_is_written_and_it_is_said(
     out = tmp_path / "out"
     answer = run("study", lip_step, "--gap", "2", "--out", out)
     assert answer.code == 0, answer.err
-    assert {path.name for path in out.iterdir()} == {"study.json", "study.csv"}
+    assert {path.name for path in out.iterdir()} == {"study.json", "study.csv", "manifest.json"}
     assert MISSING in answer.out
 
 

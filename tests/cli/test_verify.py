@@ -101,6 +101,8 @@ def put(*steps: str | int, value: Any) -> Callable[[dict[str, Any]], None]:
         (put("seams", 0, "step", value=9.0), "max_step"),
         (put("settings", "seam_turn", value=0.01), "degrees for the turn of seams, where 0.01 degrees are allowed"),
         (put("certificate", "solids", value=4), "solids = 4"),
+        (put("panels", value=[]), "it tells of no panel"),
+        (put("panels", 0, "corners", 0, 0, 0, value=1e300), "panels.0.corners.0.0.0"),
         (put("certificate", "overlap", value=1.0), "overlap = 1"),
         (put("certificate", "outputs", "flats", "drawings", value=7.0), "flats.drawings = 7"),
         (put("features", value={"plane-cone-plane": 4}), "counts {'plane-cone-plane': 4} panels by feature"),

@@ -17,12 +17,15 @@ from cadpanel.brep.building.sheet import build_panel, volume_of
 from cadpanel.brep.read import read_reference
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.deliver import deliver
+from cadpanel.delivery.manifest import write_manifest
 from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.certified import ClearModel
 from cadpanel.delivery.records.consistency import check_report
-from cadpanel.delivery.records.report import ClearModel, ReportModel, read_report, write_report
+from cadpanel.delivery.records.report import ReportModel, read_report, write_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError, SettingsError
 from cadpanel.fitting.run import fit
@@ -148,6 +151,7 @@ def tampered(folder: Path, report: ReportModel) -> tuple[str, ...]:
     """What verify says once the report is replaced."""
     (folder / REPORT).unlink()
     write_report(report, folder / REPORT)
+    write_manifest(folder)
     return verify(folder).failures
 
 
@@ -169,7 +173,7 @@ def test_a_joint_in_the_report_that_is_not_the_files_is_named(tmp_path: Path) ->
 
 def test_a_report_from_before_there_were_joints_says_nothing_of_them(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    report = deliver(fitted("lip"), out)
+    report = deliver(fitted("lip"), out, shop=ShopSettings(outputs=("step",)))
     old = report.model_copy(
         update={
             "settings": report.settings.model_copy(update={"joint": None}),

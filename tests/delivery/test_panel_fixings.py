@@ -16,6 +16,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from tests.delivered import fitted
+from tests.thorough import thorough
 
 ASKED = ShopSettings(fixings=(9.0, 300.0, 20.0), k_factor=0.42)
 
@@ -73,6 +74,7 @@ def test_a_hole_that_the_report_has_elsewhere_or_not_at_all_is_seen(folder: Path
     write_report(report, folder / REPORT)
 
 
+@thorough
 def test_a_circle_that_is_drawn_elsewhere_or_not_at_all_is_seen(folder: Path, report: ReportModel) -> None:
     blank = report.panels[0].blank
     assert blank is not None

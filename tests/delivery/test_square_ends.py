@@ -19,11 +19,12 @@ from cadpanel.delivery.verify import verify
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.joined_fits import FITS, fitted
+from tests.thorough import cases
 
 CASES: list[tuple[float, float, SkinSide]] = [(10.0, 3.0, "outer"), (0.0, 20.0, "inner")]
 
 
-@pytest.mark.parametrize("name", FITS)
+@pytest.mark.parametrize("name", cases(["lip"], [*FITS]))
 @pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
 def test_square_sheets_keep_the_joint_free_and_are_proved_so(
     tmp_path: Path, name: str, joint: float, thickness: float, skin_side: SkinSide

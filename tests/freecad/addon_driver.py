@@ -97,8 +97,10 @@ def refit(folder: str) -> "dict[str, Any]":
     from freecad.cadpanel_workbench.fit_dialog import FitDialog
 
     document = FreeCAD.openDocument(documents.document_in(folder))
+    documents.panels_of(document)[1].WantedFeature = "plane-cylinder-plane"
     dialog = FitDialog(document)
     found: dict[str, Any] = {
+        "asked": dialog.message.text(),
         "reference": dialog.reference.text(),
         "options": dialog.options.text(),
         "out": dialog.out.text(),
@@ -119,6 +121,7 @@ def refit(folder: str) -> "dict[str, Any]":
     found |= {"steps": list(dict.fromkeys(steps)), "code": dialog.ended, "message": dialog.message.text()}
     opened = FreeCAD.ActiveDocument
     found["opened"] = [opened.FileName, [panel.PanelName for panel in documents.panels_of(opened)]]
+    found["features"] = [panel.Feature for panel in documents.panels_of(opened)]
     dialog.start()  # the folder is taken now
     wait(lambda: dialog.run is None)
     found["refused"] = [dialog.ended, dialog.message.text()]

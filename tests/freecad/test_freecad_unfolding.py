@@ -22,8 +22,9 @@ from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.geometry.unroll import unroll
 from tests.delivered import fitted
 from tests.freecad.program import PROGRAMS, found_program
+from tests.thorough import thorough
 
-pytestmark = pytest.mark.freecad
+pytestmark = [pytest.mark.freecad, thorough]
 UNFOLDER = Path(__file__).parent / "unfolder.py"
 # Edges of triangles are as long in the plane to so many mm: flatmesh's own error, which adds up across a panel.
 STRAIN, SUM_OF_STRAINS = 1e-3, 0.02

@@ -9,6 +9,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.studies.trade_off import trade_off
 from tests.delivered import strip
+from tests.thorough import thorough
 
 FEATURES = ("plane-cylinder-plane", "plane-cone-plane")
 GAPS = (0.5, 3.0)
@@ -21,6 +22,7 @@ def study():
     return trade_off([strip, lambda: other], every)
 
 
+@thorough
 def test_every_combination_is_there_once_and_in_order():
     found = [(point.reference.source, point.settings.feature, point.settings.gap_tolerance) for point in study()]
     assert found == [

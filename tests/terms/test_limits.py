@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, cast
@@ -108,9 +109,6 @@ def test_the_names_of_a_limit_are_its_own_and_its_default_is_in_its_range(limit:
     assert "{" not in limit.rows[-1].form.format(1.0)
 
 
-TWICE = ("evenness", "max_kink", "drift_outline")
-
-
 def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
     """What would have to be allowed for the strip to miss a limit by a share, or to keep it by one below 0."""
     found = limit.measure(fitted().measures)
@@ -127,8 +125,10 @@ def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(l
         assert keeps_limits(result.measures, how) is kept
         assert bool(limit.excess(result.measures, allowed[limit.name]).max() <= 1.0) is kept
         again = replace(result, settings=how, tolerance_met=kept)
-        # What a seam does counts for both of its panels, and the outlines of two are as far off the drawn one.
-        assert len(offenders(again)) == (0 if kept else 2 if limit.name in TWICE else 1)
+        # What a seam does counts for both of its panels.
+        beyond = int((limit.excess(result.measures, allowed[limit.name]) > 1.0).sum())
+        assert len(offenders(again)) == beyond
+        assert (beyond == 0) is kept
         said = again.shortfall()
         if kept:
             assert said is None
@@ -155,7 +155,7 @@ def test_the_advice_without_a_limit_that_is_missed_is_a_larger_gap_or_more_drift
     said = result.shortfall()
     assert said is not None
     assert said.startswith("the gap tolerance of 0.001 mm is not met")
-    assert "; allow a larger gap or more drift" in said
+    assert re.search(r"; allow a larger gap( \(--gap-tolerance [\d.]+ would hold\))? or more drift", said)
 
 
 @every_limit

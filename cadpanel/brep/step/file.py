@@ -17,8 +17,9 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
 from cadpanel.brep.files.xcaf import products_of
-from cadpanel.brep.step.products import Header, Schema, step_file
+from cadpanel.brep.step.products import Header, step_file
 from cadpanel.brep.step.properties import ATTRIBUTES, PartData, Stated
+from cadpanel.brep.step.schemas import Schema
 from cadpanel.brep.step.stated import stated_of
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError

@@ -5,31 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Literal
 
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.step.properties import PartData, PropertyWriter
+from cadpanel.brep.step.schemas import SCHEMAS, UNCERTAINTY, Schema
 from cadpanel.brep.step.text import StepText, real, references, string
 from cadpanel.brep.step.topology import TopologyWriter
-
-Schema = Literal["AP242", "AP214"]
-
-_SCHEMAS = {
-    "AP242": (
-        "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF {1 0 10303 442 1 1 4 }",
-        "ap242_managed_model_based_3d_engineering',2013",
-        "Managed model based 3d engineering",
-    ),
-    "AP214": (
-        "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }",
-        "automotive_design',2000",
-        "core data for automotive mechanical design processes",
-    ),
-}
-UNCERTAINTY = 1e-7
-"""Accuracy in mm that the file states for its geometry."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +53,7 @@ def step_file(
         UnsupportedGeometry: if a shape is not made of exact panels' geometry.
     """
     text = StepText()
-    schema_name, protocol, application = _SCHEMAS[schema]
+    schema_name, protocol, application = SCHEMAS[schema]
     frame = _Frame(text, protocol, application, placed)
     assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
     styled = []

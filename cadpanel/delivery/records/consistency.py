@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
+from cadpanel.delivery.records.certified import CertificateModel
+from cadpanel.delivery.records.left_out import seams_left_out
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
-from cadpanel.delivery.records.report import CertificateModel, PanelModel, ReportModel, SeamModel, SummaryModel
+from cadpanel.delivery.records.report import PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.delivery.records.shape_checks import shape_faults
 from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
 from cadpanel.features.catalogue import AUTO
@@ -65,6 +67,7 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     ]
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
     failures += _joint_faults(report, rules)
+    failures += seams_left_out(report)
     failures += _summary_faults(report, depth)
     failures += _certificate_faults(report.certificate, certificate)
     return tuple(failures)

@@ -15,7 +15,10 @@ from cadpanel.errors import DeliveryError
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 NonNegativeCount = Annotated[int, Field(ge=0)]
-Vector = tuple[float, float, float]
+FARTHEST = 1e12
+"""Of any coordinate, mm: a flat cone's apex may lie far away, and beyond this squares lose all digits."""
+Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
+Vector = tuple[Coordinate, Coordinate, Coordinate]
 
 
 def _is_unit(vector: Vector) -> Vector:

@@ -18,7 +18,7 @@ from cadpanel.errors import ReferenceFileError
 from tests.cuts import EQUAL, cut, model_of, panels_of
 from tests.model_files import write_shape
 from tests.reference_shapes import kernel_face
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 LENGTH, FLANGE, RADIUS, TURN = 6000.0, 800.0, 150.0, math.radians(100.0)
 
@@ -217,7 +217,8 @@ def test_a_lip_that_turns_less_for_a_moment_in_its_midst_is_one():
     assert notes == ()
 
 
-@pytest.mark.parametrize("kink", cases([8.0], [0.0, 8.0]))
+@thorough
+@pytest.mark.parametrize("kink", [0.0, 8.0])
 def test_a_band_goes_on_over_faces_that_lie_end_to_end_and_hold_the_lip_each(kink):
     """Straight on, or in two lines that meet in a kink."""
 
@@ -234,7 +235,7 @@ def test_faces_end_to_end_whose_lips_do_not_meet_are_each_a_strip_of_their_own()
     first = kernel_face(lambda u, v: folds(60.0)(u, 0.5 * v), poles=60)
     second = kernel_face(lambda u, v: folds(60.0)(u, 0.5 + 0.5 * v) + np.array([0.0, 200.0, 0.0]), poles=60)
     model = model_of(first, second)
-    sentence = r"no strip .*only 1 of its 2 faces touch each other along whole edges\): choose fewer faces, or cut it"
+    sentence = r"no strip .*only 1 of its 2 faces touch each other along whole edges\)\.$"
     with pytest.raises(ReferenceFileError, match=sentence):
         panels_of(model, divide=2, lip=300.0)
     assert [len(panels_of(model, divide=2, lip=300.0, faces=(face,))) for face in "12"] == [2, 2]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.comparison import ColumnModel, ComparisonModel
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
 from cadpanel.delivery.records.report import (
     BaselinesModel,
-    CertificateModel,
     PanelModel,
     ReferenceModel,
     ReportModel,
     SeamModel,
     SolveModel,
     SummaryModel,
-    TimingModel,
 )
 from cadpanel.delivery.records.settings import ComparisonSettingsModel, SettingsModel
 

@@ -46,7 +46,7 @@ def test_what_holds_a_narrow_gap_holds_a_wide_one_at_no_more_deviation(twist):
         assert wide <= 1.01 * narrow
 
 
-@pytest.mark.parametrize("seed", cases([2], [2, 6]))
+@pytest.mark.parametrize("seed", cases([], [2, 6]))
 def test_what_holds_a_narrow_gap_holds_a_wide_one_also_where_gaps_give_way(seed):
     """However narrow a gap is asked for that cannot be held, it stays as wide; whatever is wider is held."""
     random = np.random.default_rng(seed)

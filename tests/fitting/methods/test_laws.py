@@ -223,7 +223,7 @@ def test_a_local_fit_that_runs_out_of_steps_says_so(monkeypatch):
     monkeypatch.setattr(local, "_RACE", ((2, 1.0), (400, 1.0)))
     problem, starts = posed(lip(2), FitSettings())
     assert Local().fit(problem, starts, FitSettings()).stopped is Stop.AT_REST
-    monkeypatch.setattr(local, "_RACE", ((2, 1.0), (1, 1.0)))
+    monkeypatch.setattr(local, "_RACE", ((1, 1.0),))
     assert Local().fit(problem, starts, FitSettings()).stopped is Stop.STEP_LIMIT
 
 
@@ -243,7 +243,7 @@ def test_curves_that_part_between_the_points_that_are_held_are_no_tolerance_held
         """As if arcs parted far."""
         return replace(along_seams(edges, met), **{what: np.full(len(met), 100.0)})
 
-    monkeypatch.setattr("cadpanel.fitting.methods.concurrent.along_seams", parted)
+    monkeypatch.setattr("cadpanel.fitting.methods.holding.along_seams", parted)
     how = FitSettings(gap_tolerance=2.0) if what == "gap" else FitSettings()
     problem, starts = posed(lip(2), how)
     found = Concurrent().fit(problem, [fit_local(problem, lip(2), starts).unknowns], how)

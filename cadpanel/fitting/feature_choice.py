@@ -88,15 +88,15 @@ class Choice:
             whether any panel has another feature now.
         """
         changed = False
-        for panel in panels.tolist():
-            for place in range(self.chosen[panel] + 1, len(CHEAPEST_FIRST)):
-                if not self._tried[panel, place]:
-                    self._try(place, np.array([panel]))
-                # A feature that is no closer alone will be no closer among its neighbours.
-                if self.deviations[panel, place] < self.deviations[panel, self.chosen[panel]]:
-                    self.chosen[panel] = place
-                    changed = True
-                    break
+        waiting = panels
+        for place in range(1, len(CHEAPEST_FIRST)):
+            asked = waiting[self.chosen[waiting] < place]
+            self._try(place, asked[~self._tried[asked, place]])
+            # A feature that is no closer alone will be no closer among its neighbours.
+            closer = asked[self.deviations[asked, place] < self.deviations[asked, self.chosen[asked]]]
+            self.chosen[closer] = place
+            waiting = np.setdiff1d(waiting, closer)
+            changed |= len(closer) > 0
         return changed
 
     def forbid(self, panels: IntArray) -> bool:

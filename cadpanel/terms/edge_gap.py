@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.geometry.seam_frames import seam_frames, tangents_at
 from cadpanel.geometry.vectors import dot
@@ -35,6 +35,49 @@ class _Held:
     by_mover: Array | None
     by_other: Array | None
 
+    def cut(self, seams: slice, points: int) -> _Held:
+        """Some seams, and so many of their points."""
+        by_mover, by_other = (None if part is None else part[seams, :points] for part in (self.by_mover, self.by_other))
+        return _Held(self.vectors[seams, :points], by_mover, by_other)
+
+
+@dataclass(frozen=True, slots=True)
+class _Side:
+    """The points of one panel of every seam, and what of the other panel they are held to.
+
+    Attributes:
+        own, other: (s,) the panel that the points belong to, and the other one.
+        end: (s,) the other panel's edge.
+        corners: (s, 2) where that begins and ends.
+        straight: whether it is straight.
+        places, share: see `terms.seams.Movers`.
+    """
+
+    own: IntArray
+    other: IntArray
+    end: IntArray
+    corners: IntArray
+    straight: bool
+    places: IntArray
+    share: Array
+
+    def with_other(self, second: _Side) -> _Side:
+        """These seams, and after them those of another side that is held to curved edges as well.
+
+        The side with fewer points has its last one more than once.
+        """
+        most = max(self.places.shape[1], second.places.shape[1])
+        filled = [one.places[:, np.minimum(np.arange(most), one.places.shape[1] - 1)] for one in (self, second)]
+        return _Side(
+            own=np.concatenate([self.own, second.own]),
+            other=np.concatenate([self.other, second.other]),
+            end=np.concatenate([self.end, second.end]),
+            corners=np.concatenate([self.corners, second.corners]),
+            straight=False,
+            places=np.concatenate(filled),
+            share=np.zeros(most),
+        )
+
 
 class MixedGap(HeldTerm):
     """Holds edges that are not alike within the tolerance of each other.
@@ -50,12 +93,15 @@ class MixedGap(HeldTerm):
         self.seams, self.place = seams, place
         self.blocks, self.pair, self.panels = seams.blocks, seams.pair, len(place.origins)
         self._movers: tuple[Movers, Movers] = (movers(layout, seams, 0), movers(layout, seams, 1))
+        first, second = self._side(0), self._side(1)
+        self._sides = (first, second)
+        self._both_curved = None if first.straight or second.straight else first.with_other(second)
         points = sum(one.places.shape[1] for one in self._movers)
         self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, gives_way=True)
 
     def vectors(self, state: State) -> Array:
         """(seams, points, 3) from the other panel's edge."""
-        return np.concatenate([self._held(state, side, derivatives=False).vectors for side in (0, 1)], axis=1)
+        return np.concatenate([held.vectors for held in self._both(state, derivatives=False)], axis=1)
 
     def frames(self, state: State) -> Array:
         """(seams, points, parts, 3) directions of the gap's parts, in the frame of the panel that is measured to."""
@@ -73,65 +119,88 @@ class MixedGap(HeldTerm):
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""
-        first, second = (self._held(state, side, derivatives=True) for side in (0, 1))
+        first, second = self._both(state, derivatives=True)
         jacobians = []
         for parts in ((first.by_mover, second.by_other), (first.by_other, second.by_mover)):
             jacobians.append(np.concatenate([part for part in parts if part is not None], axis=1))
         return np.concatenate([first.vectors, second.vectors], axis=1), tuple(jacobians)
 
-    def _held(self, state: State, side: int, *, derivatives: bool) -> _Held:
-        own, other = self.seams.panels[:, side], self.seams.panels[:, 1 - side]
-        moving = self._movers[side]
-        at = state.boundary.position[own[:, None, None], moving.places]
-        share = moving.share[:, None]
+    def _side(self, side: int) -> _Side:
+        moving, seams = self._movers[side], self.seams
+        return _Side(
+            own=seams.panels[:, side],
+            other=seams.panels[:, 1 - side],
+            end=seams.edges[:, 1 - side],
+            corners=seams.corners[:, 1 - side][:, [0, -1]],
+            straight=seams.straight(1 - side),
+            places=moving.places,
+            share=moving.share,
+        )
+
+    def _both(self, state: State, *, derivatives: bool) -> tuple[_Held, _Held]:
+        """What the points of the first panels, and of the second, are held by."""
+        first, second = self._sides
+        if self._both_curved is None:
+            return (
+                self._held(state, first, derivatives=derivatives),
+                self._held(state, second, derivatives=derivatives),
+            )
+        # Both at once: the arrays are small, and most of the time goes to calls.
+        held = self._held(state, self._both_curved, derivatives=derivatives)
+        seams = len(first.own)
+        return held.cut(slice(seams), first.places.shape[1]), held.cut(slice(seams, None), second.places.shape[1])
+
+    def _held(self, state: State, side: _Side, *, derivatives: bool) -> _Held:
+        own, other = side.own, side.other
+        at = state.boundary.position[own[:, None, None], side.places]
+        share = side.share[:, None]
         points = self.place.carry((1.0 - share) * at[:, :, 0] + share * at[:, :, 1], own, other)
         moved = None
         if derivatives:
-            rates = slopes(state.boundary)[own[:, None, None], moving.places]
+            rates = slopes(state.boundary)[own[:, None, None], side.places]
             rates = (1.0 - share[..., None]) * rates[:, :, 0] + share[..., None] * rates[:, :, 1]
             moved = self.place.turn(own, other)[:, None] @ rates
-        if self.seams.straight(1 - side):
-            return self._from_line(state, side, points, moved)
-        return self._from_end(state, side, points, moved)
+        return _from_line(state, side, points, moved) if side.straight else _from_end(state, side, points, moved)
 
-    def _from_line(self, state: State, side: int, points: Array, moved: Array | None) -> _Held:
-        """From the line through two corners: r = x - c - s e with s = (x - c) . e / e . e and e between the corners."""
-        other = self.seams.panels[:, 1 - side, None]
-        corners = self.seams.corners[:, 1 - side]
-        at = state.corners.position[other, corners]
-        e = (at[:, 1] - at[:, 0])[:, None]
-        square = dot(e, e)
-        s = (dot(points - at[:, :1], e) / square)[..., None]
-        r = points - at[:, :1] - s * e
-        if moved is None:
-            return _Held(r, None, None)
-        rates = slopes(state.corners)[other, corners]
-        de = (rates[:, 1] - rates[:, 0])[:, None]
-        # r stays square to e: what lies along e of its change makes up for the turning of e.
-        by_other = -(rates[:, :1] + s[..., None] * de)
-        away = (e[..., None, :] @ by_other)[..., 0, :]
-        turned = (r[..., None, :] @ de)[..., 0, :]
-        by_other -= e[..., None] * ((away + turned) / square[..., None])[..., None, :]
-        across = np.eye(3) - e[..., :, None] * e[..., None, :] / square[..., None, None]
-        return _Held(r, across @ moved, by_other)
 
-    def _from_end(self, state: State, side: int, points: Array, moved: Array | None) -> _Held:
-        """From the skin, and from the cut plane; the third number is 0."""
-        other, end = self.seams.panels[:, 1 - side], self.seams.edges[:, 1 - side]
-        surfaces, cuts = state.surfaces, state.cuts
-        patch = surfaces.assign(points, other)
-        from_skin, inner = surfaces.distance(points, other, patch)
-        m = cuts.m[other, end]
-        from_cut = dot(points, m[:, None]) - cuts.s[other, end][:, None]
-        vectors = np.stack([from_skin, from_cut, np.zeros_like(from_skin)], axis=-1)
-        if moved is None:
-            return _Held(vectors, None, None)
-        if surfaces.outer is None or cuts.dm is None or cuts.ds is None:
-            raise ValueError("the state was walked without derivatives")
-        gradients = np.zeros((*points.shape[:2], 3, 3))
-        gradients[:, :, 0] = -inner[..., 3:6]
-        gradients[:, :, 1] = m[:, None]
-        by_other = np.zeros((*points.shape[:2], 3, surfaces.outer.shape[-1]))
-        by_other[:, :, 0] = (inner[..., None, :] @ surfaces.outer[other[:, None], patch])[..., 0, :]
-        by_other[:, :, 1] = points @ cuts.dm[other, end] - cuts.ds[other, end][:, None]
-        return _Held(vectors, gradients @ moved, by_other)
+def _from_line(state: State, side: _Side, points: Array, moved: Array | None) -> _Held:
+    """From the line through two corners: r = x - c - s e with s = (x - c) . e / e . e and e between the corners."""
+    other, corners = side.other[:, None], side.corners
+    at = state.corners.position[other, corners]
+    e = (at[:, 1] - at[:, 0])[:, None]
+    square = dot(e, e)
+    s = (dot(points - at[:, :1], e) / square)[..., None]
+    r = points - at[:, :1] - s * e
+    if moved is None:
+        return _Held(r, None, None)
+    rates = slopes(state.corners)[other, corners]
+    de = (rates[:, 1] - rates[:, 0])[:, None]
+    # r stays square to e: what lies along e of its change makes up for the turning of e.
+    by_other = -(rates[:, :1] + s[..., None] * de)
+    away = (e[..., None, :] @ by_other)[..., 0, :]
+    turned = (r[..., None, :] @ de)[..., 0, :]
+    by_other -= e[..., None] * ((away + turned) / square[..., None])[..., None, :]
+    across = np.eye(3) - e[..., :, None] * e[..., None, :] / square[..., None, None]
+    return _Held(r, across @ moved, by_other)
+
+
+def _from_end(state: State, side: _Side, points: Array, moved: Array | None) -> _Held:
+    """From the skin, and from the cut plane; the third number is 0."""
+    other, end = side.other, side.end
+    surfaces, cuts = state.surfaces, state.cuts
+    patch = surfaces.assign(points, other)
+    from_skin, inner = surfaces.distance(points, other, patch)
+    m = cuts.m[other, end]
+    from_cut = dot(points, m[:, None]) - cuts.s[other, end][:, None]
+    vectors = np.stack([from_skin, from_cut, np.zeros_like(from_skin)], axis=-1)
+    if moved is None:
+        return _Held(vectors, None, None)
+    if surfaces.outer is None or cuts.dm is None or cuts.ds is None:
+        raise ValueError("the state was walked without derivatives")
+    gradients = np.zeros((*points.shape[:2], 3, 3))
+    gradients[:, :, 0] = -inner[..., 3:6]
+    gradients[:, :, 1] = m[:, None]
+    by_other = np.zeros((*points.shape[:2], 3, surfaces.outer.shape[-1]))
+    by_other[:, :, 0] = (inner[..., None, :] @ surfaces.outer[other[:, None], patch])[..., 0, :]
+    by_other[:, :, 1] = points @ cuts.dm[other, end] - cuts.ds[other, end][:, None]
+    return _Held(vectors, gradients @ moved, by_other)

@@ -105,6 +105,30 @@ def batches(
     return tuple(found)
 
 
+def ends_of(parts: Sequence[SeamBatch]) -> tuple[SeamBatch, ...]:
+    """Batches in one, of which the outermost corners meet; none where there are none.
+
+    With several features in one fit nearly every seam is of a kind of its own, and what looks at the ends of edges
+    alone need not know of that.
+    """
+    if not parts:
+        return ()
+    corners = np.concatenate([one.corners[:, :, [0, -1]] for one in parts])
+    names = ("index", "panels", "edges", "pair", "reversed")
+    index, panels, edges, pair, backwards = (np.concatenate([getattr(one, name) for one in parts]) for name in names)
+    whole = SeamBatch(
+        index=index,
+        panels=panels,
+        edges=edges,
+        pair=pair,
+        reversed=backwards,
+        corners=corners,
+        curved=parts[0].curved,
+        alike=False,
+    )
+    return (whole,)
+
+
 def arc_places(layout: Layout, batch: SeamBatch, side: int) -> IntArray:
     """(s, q) the arc points of the batch's edges on one side, by their places among the panels' arc points."""
     features = layout.feature_of

@@ -10,7 +10,8 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.layout import Layout
-from cadpanel.features.rulings import PanelFeature, Points, Walk
+from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk
+from cadpanel.features.walk import arc_rulings
 from cadpanel.terms.surfaces import CutPlanes, Surfaces, cut_planes_of, surfaces_of
 
 
@@ -50,6 +51,15 @@ class State:
         return self._points([_corner_normals(group.feature, walked) for group, walked in pairs])
 
     @cached_property
+    def boundary_normals(self) -> Points:
+        """The skins' unit normals at the corners and at the arc points after each other, and their derivatives."""
+        inside = self._points([_arc_normals(walked) for walked in self.walks])
+        position = np.concatenate([self.normals.position, inside.position], axis=1)
+        if self.normals.jacobian is None or inside.jacobian is None:
+            return Points(position, None)
+        return Points(position, np.concatenate([self.normals.jacobian, inside.jacobian], axis=1))
+
+    @cached_property
     def boundary(self) -> Points:
         """Corners and arc points after each other, and their derivatives."""
         position = np.concatenate([self.corners.position, self.arcs.position], axis=1)
@@ -81,6 +91,17 @@ def _corner_normals(feature: PanelFeature, walked: Walk) -> Points:
     """Those of the rulings that end there, end by end, or of a polygon's one plane all round."""
     rulings = walked.edges if walked.edges.p.shape[1] else walked.anchor
     rounds = feature.corner_count // rulings.n.shape[1]
+    return _normals(rulings, rounds)
+
+
+def _arc_normals(walked: Walk) -> Points:
+    """Those of the rulings inside curved patches, end by end; none of polygons."""
+    inside = arc_rulings(walked) if walked.edges.p.shape[1] else walked.edges
+    return _normals(inside, 2)
+
+
+def _normals(rulings: Rulings, rounds: int) -> Points:
+    """The skins' normals along rulings, so many times after each other."""
     normals = np.tile(rulings.n, (1, rounds, 1))
     if rulings.twist is None:
         return Points(normals, None)

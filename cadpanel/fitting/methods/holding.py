@@ -26,6 +26,7 @@ from cadpanel.terms.limits.kink import Kink, KinkTerm
 from cadpanel.terms.outermost_gap import OutermostGap
 from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.parts import PARTS
+from cadpanel.terms.seams import SeamBatch, ends_of
 from cadpanel.terms.state import State
 from cadpanel.terms.term import HeldTerm
 
@@ -69,13 +70,17 @@ def gap_terms(problem: Problem, gaps: Mapping[str, float | Array], state: State)
             term.straighten(state)
             term.hold.radius = _ARC_SHARE * term.hold.radius
     parts = {part: gaps[part] / problem.place.length for part in PARTS if part in gaps}
-    for batch in problem.seams if parts else ():
-        own = {part: most[batch.index] if isinstance(most, np.ndarray) else most for part, most in parts.items()}
+
+    def own(batch: SeamBatch) -> dict[str, float | Array]:
+        return {part: most[batch.index] if isinstance(most, np.ndarray) else most for part, most in parts.items()}
+
+    for batch in ends_of(problem.seams) if parts else ():
         ends = OutermostGap(batch, problem.place, problem.layout, tolerance=1.0)
-        terms.append(PartedGap(ends, state, own))
-        if not (batch.straight(0) and batch.straight(1)) and set(parts) & set(PARTS[: MixedGap.parts]):
+        terms.append(PartedGap(ends, state, own(batch)))
+    for batch in problem.seams if set(parts) & set(PARTS[: MixedGap.parts]) else ():
+        if not (batch.straight(0) and batch.straight(1)):
             between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
-            terms.append(PartedGap(between, state, own, share=_ARC_SHARE))
+            terms.append(PartedGap(between, state, own(batch), share=_ARC_SHARE))
     return terms
 
 

@@ -1,7 +1,7 @@
 """Kinks that cannot be held: as small as they become while gaps are held, where that is nearer to what is asked for.
 
-Distances that give way are widened by one factor, and kinks are held at corners alone: what ends at 1.3 times its gaps
-and kinks there may have three times the kink on its arcs. A kink that costs gaps and comes out larger than without a
+Distances that give way are widened by one factor, and kinks are held at points of a seam alone: what ends at 1.3 times
+its gaps and kinks there may have more between them. A kink that costs gaps and comes out larger than without a
 limit helps nobody. Where kinks are not held, fits are tried in which they may be larger and gaps not, and whatever
 exceeds least what is asked for, measured along whole seams, is kept.
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+import cadpanel as cp
 from cadpanel.fitting.methods.concurrent import seams_held
 from cadpanel.fitting.methods.holding import MARGIN, seam_excess
 from cadpanel.fitting.methods.kinks import less_kinked
@@ -41,3 +42,9 @@ def test_what_comes_nearer_to_what_is_asked_for_is_kept_and_what_must_hold_holds
     assert all(np.array_equal(term.hold.radius, radius) for term, radius in zip(model.held, asked, strict=True))
     again = less_kinked(problem, model, found, settings, ~everywhere)
     assert np.array_equal(again.unknowns, found.unknowns)
+
+
+def test_a_kink_that_can_be_held_is_held_along_the_arcs_as_well_as_at_corners():
+    measures = cp.fit(reference(random_lip(5, 3)), max_kink=2.0).measures
+    assert np.degrees(measures.kink.max()) <= 2.0
+    assert measures.seam_width.max() <= FitSettings().gaps["width"]

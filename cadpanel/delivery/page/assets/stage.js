@@ -282,7 +282,9 @@ class Stage {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    // Whoever has not turned it yet sees all of it, also when the page has found its form.
+    if (this.first && this.camera.position.equals(this.first)) this.home();
+    else this.draw();
   }
 
   home() {
@@ -295,6 +297,7 @@ class Stage {
     const way = upright ? outward.normalize() : new THREE.Vector3(east, north, Math.max(outward.z, 0));
     way.z = Math.max(way.z, 0) + 0.35;
     this.look(this.model.panels, this.model.box.middle, way);
+    this.first = this.camera.position.clone();
   }
 
   // The direction in plan in which the panels reach less far, from the south; from the south-west where there is none.

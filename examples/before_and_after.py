@@ -2,18 +2,18 @@
 
 python examples/before_and_after.py [REFERENCE.step|canopy|column] [OUT] [PICTURE.png]
 
-The canopy (60 m, 30 panels) and the column (8 m, 64 panels) are drawn here; any other strip is read from a file. Both
-deliveries are read back, and their seams are drawn, coloured by how far each turns from the drawn one.
+The canopy (60 m, 30 panels) and the column (8 m, 64 panels) are drawn by `shapes.py`; any other strip is read from a
+file. Both deliveries are read back, and their seams are drawn, coloured by how far each turns from the drawn one.
 """
 
 import sys
 from pathlib import Path
 from typing import Any
 
-import cadquery as cq
 import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from shapes import SHAPES  # type: ignore[import-not-found] # beside this file, where Python looks first
 
 import cadpanel as cp
 from cadpanel.delivery.records.report import ReportModel, read_report
@@ -33,50 +33,12 @@ if which == "column":
     }
 
 
-def face(points: np.ndarray) -> cq.Face:
-    """A smooth face through points (m, n, 3)."""
-    return cq.Face.makeSplineApprox([[cq.Vector(*p) for p in row] for row in points.tolist()], tol=0.05, maxDeg=5)
-
-
-def canopy() -> cq.Compound:
-    """A strip of 60 m: two flanges about a blend, which twists to one side and back while its spine is an arc."""
-    along, across = np.linspace(0.0, 1.0, 121), np.linspace(0.0, 1.0, 41)
-    # The section's direction turns by 80 degrees in its middle third.
-    turn = np.radians(80.0) * np.clip(3.0 * across - 1.0, 0.0, 1.0)
-    middle = 0.5 * (turn[1:] + turn[:-1])
-    step = 2800.0 / (len(across) - 1)
-    section = np.zeros((len(across), 2))
-    section[1:] = np.cumsum(step * np.stack([np.cos(middle), -np.sin(middle)], axis=1), axis=0)
-    section -= section[len(across) // 2]
-    points = []
-    for share in along.tolist():
-        plan, twist = 60_000.0 * share / 90_000.0, np.radians(12.0 * np.sin(np.pi * share))
-        place = np.array([90_000.0 * np.sin(plan), 90_000.0 * (1.0 - np.cos(plan)), 3_000.0 * np.sin(np.pi * share)])
-        side, up = np.array([-np.sin(plan), np.cos(plan), 0.0]), np.array([0.0, 0.0, 1.0])
-        x, y = np.cos(twist) * side + np.sin(twist) * up, np.cos(twist) * up - np.sin(twist) * side
-        points.append(place + section[:, :1] * x + section[:, 1:] * y)
-    return cq.Compound.makeCompound([face(np.array(points))])
-
-
-def column() -> cq.Compound:
-    """Four quarters of a column that is oval and flares towards its head."""
-    quarters = []
-    for quarter in range(4):
-        angle = 0.5 * np.pi * (quarter + np.linspace(0.0, 1.0, 25))
-        height = np.linspace(0.0, 8000.0, 41)[:, None]
-        wider = 1.0 + 0.8 * (height / 8000.0) ** 2
-        x, y = 1200.0 * wider * np.cos(angle), 800.0 * wider * np.sin(angle)
-        quarters.append(face(np.stack([x, y, np.broadcast_to(height, x.shape)], axis=2)))
-    return cq.Compound.makeCompound(quarters)
-
-
 def drawn() -> cp.Reference:
     """The reference as panels."""
     if which not in ("canopy", "column"):
         return cp.read(which)
     file = out / f"{which}.step"
-    shape = canopy() if which == "canopy" else column()
-    shape.exportStep(str(file))
+    SHAPES[which]().exportStep(str(file))
     return cp.read(file, divide=30) if which == "canopy" else cp.read(file, grid=(8, 2))
 
 

@@ -1,29 +1,53 @@
-"""Every example and every command and snippet of the README is run as it stands there."""
+"""Every example, and every command and snippet of every page, is run as it stands there."""
 
 from __future__ import annotations
 
 import re
+import runpy
 import shlex
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from cadpanel.cli import main as program
+from cadpanel.cli.examples import EXAMPLES as HELP
+from cadpanel.fitting.settings import FitSettings
+from examples.options import with_options
 
 ROOT = Path(__file__).parent.parent
 REFERENCE = ROOT / "fixtures" / "kai_tak_nw.step"
-EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+# What draws and writes the pages is run by their commands, and held to what stands there.
+FOR_PAGES = {"shapes", "pictures", "options"}
+EXAMPLES = sorted(file for file in (ROOT / "examples").glob("*.py") if file.stem not in FOR_PAGES)
+# `diff` finds what it is asked to find.
+DIFFERS = {"diff": 1}
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-SNIPPETS = re.findall(r"^```python\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
-# Command lines stand indented; those with words in capitals show a form and not a run.
-COMMANDS = [
-    line.strip().rpartition("&& ")[2]
-    for line in README.splitlines()
-    if re.match(r"    (.*&& )?cadpanel [^A-Z]+$", line) or re.match(r"    (.*&& )?cadpanel .*fixtures/", line)
-]
+PAGES = [ROOT / "README.md", *(ROOT / "examples" / f"{name}.md" for name in ("tutorial", "gallery", "how-to"))]
+PAGES += sorted(set((ROOT / "examples").glob("*.md")) - set(PAGES))
+TEXTS = {page: page.read_text(encoding="utf-8") for page in PAGES}
+
+
+def snippets(kind: str) -> list[str]:
+    """The blocks of a kind on all pages."""
+    return [
+        block
+        for text in TEXTS.values()
+        for block in re.findall(rf"^```{kind}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+    ]
+
+
+def commands() -> list[str]:
+    """Every command line once: they stand indented, and those with words in capitals show a form and not a run.
+
+    What draws the surfaces comes first, as the pages say.
+    """
+    lines = [line.strip() for text in TEXTS.values() for line in text.splitlines() if line.startswith("    ")]
+    found = [line for line in lines if re.match(r"(cadpanel [^A-Z]+$|cadpanel .*fixtures/|python examples/)", line)]
+    return sorted(dict.fromkeys(found), key=lambda line: not line.startswith("python examples/shapes.py"))
 
 
 @pytest.fixture
@@ -41,8 +65,39 @@ def run(command: list[str], folder: Path) -> str:
 
 def test_there_are_examples_snippets_and_commands() -> None:
     assert len(EXAMPLES) >= 3
-    assert SNIPPETS
-    assert any(" fit " in command for command in COMMANDS)
+    assert len(snippets("python")) >= 2
+    assert any(" fit " in command for command in commands())
+
+
+def test_every_example_of_the_help_stands_on_a_page_and_is_run() -> None:
+    assert {line for lines in HELP.values() for line in lines} <= set(commands())
+
+
+def test_the_tables_of_options_are_those_that_the_commands_make() -> None:
+    page = ROOT / "examples" / "reference.md"
+    assert TEXTS[page] == with_options(TEXTS[page]), "python examples/options.py writes them anew"
+
+
+def test_links_and_pictures_of_the_pages_are_there_and_pictures_are_small() -> None:
+    for page, text in TEXTS.items():
+        for link in re.findall(r"\]\(([^)#]+)|src=\"([^\"]+)", text):
+            file = page.parent / "".join(link)
+            assert file.is_file(), f"{page.name}: {file}"
+            assert file.suffix != ".png" or file.stat().st_size < 100_000, file
+
+
+def test_the_readme_is_one_screen_with_a_picture_and_three_recipes() -> None:
+    text = TEXTS[ROOT / "README.md"]
+    assert len(text.splitlines()) <= 60
+    assert text.index(".png") < text.index("pip install")
+    assert len(re.findall(r"^    cadpanel fit ", text, flags=re.MULTILINE)) == 3
+
+
+def test_the_rules_on_the_pages_are_rules() -> None:
+    asked: list[Any] = [tomllib.loads(block) for block in snippets("toml")]
+    told = [FitSettings(rules=rules).rules for rules in asked]
+    assert told
+    assert all(told)
 
 
 @pytest.mark.slow
@@ -50,7 +105,7 @@ def test_there_are_examples_snippets_and_commands() -> None:
 def test_an_example_runs_and_writes_step(example: Path, workplace: Path) -> None:
     out = workplace / "out"
     said = run([sys.executable, str(example), "fixtures/kai_tak_nw.step", str(out)], workplace)
-    assert "NW-01" in said
+    assert re.search("NW-0[1-8]", said)
     assert list(out.glob("*.step"))
 
 
@@ -78,16 +133,21 @@ def test_the_notebook_runs_and_every_cell_shows_something(workplace: Path) -> No
 
 
 @pytest.mark.slow
-def test_the_snippets_of_the_readme_run_one_after_the_other(workplace: Path) -> None:
-    (workplace / "snippets.py").write_text("\n".join(SNIPPETS), encoding="utf-8")
+def test_the_snippets_of_the_pages_run_one_after_the_other(workplace: Path) -> None:
+    (workplace / "snippets.py").write_text("\n".join(snippets("python")), encoding="utf-8")
     run([sys.executable, "snippets.py"], workplace)
 
 
 @pytest.mark.slow
-def test_the_commands_of_the_readme_run_one_after_the_other(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_commands_of_the_pages_run_one_after_the_other(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In this process: that the program starts is held by tests of its own, and the kernel takes long to load."""
     monkeypatch.chdir(workplace)
-    for command in COMMANDS:
+    for command in commands():
         words = shlex.split(command)
-        assert words[0] == "cadpanel"
-        assert program.main(words[1:]) == 0, command
+        if words[0] == "cadpanel":
+            assert program.main(words[1:]) == DIFFERS.get(words[1], 0), command
+            continue
+        monkeypatch.setattr(sys, "argv", words[1:])
+        runpy.run_path(str(ROOT / words[1]), run_name="__main__")
+    for name in ("edge", "flare", "roof"):
+        assert (workplace / "build" / "pictures" / f"{name}.png").is_file()

@@ -1,4 +1,4 @@
-"""The shipped lips are what the README says: calibrated to the paper's baseline, and closed by the default fit."""
+"""The shipped lips are what the pages say: calibrated to the paper's baseline, and closed by the default fit."""
 
 from __future__ import annotations
 

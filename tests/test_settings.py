@@ -1,9 +1,8 @@
-"""Every list of settings names the same ones: fields, keywords, records, options, and the README's table."""
+"""Every list of settings names the same ones: fields, keywords, records and options."""
 
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from dataclasses import MISSING, fields, replace
 from inspect import signature
@@ -33,8 +32,6 @@ from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
 from cadpanel.setting import options_of
 from cadpanel.terms.limits.catalogue import LIMITS
 from tests.delivered import strip
-
-README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 
 # What a command has besides settings.
 OF_THE_COMMAND = {"out", "overwrite", "quiet", "time_limit", "tell_steps"}
@@ -96,28 +93,6 @@ def test_the_options_are_the_settings() -> None:
     assert options(compare) == options(fit) - SHEET - SHOP - set(OF_A_COLUMN) - {"time_limit", "tell_steps"}
     assert options(study) == options(compare) - {"weights"} | {"feature", "max_deviation"}
     assert options(inspect) == {"file", "unit", "faces", "seam_tolerance", "as_json"}
-
-
-def readme_table() -> dict[str, str]:
-    """The options of the README's table, and what it says of their defaults."""
-    table = README[README.index("| option | meaning | default |") :].split("\n\n")[0].splitlines()[2:]
-    stated: dict[str, str] = {}
-    for row in table:
-        _, listed, _, said, _ = re.split(r"(?<!\\)\|", row)
-        flags = re.findall(r"`--([a-z-]+)", listed)
-        defaults = said.replace("`", "").strip().split(", ")
-        stated |= dict(zip(flags, defaults if len(defaults) == len(flags) else [""] * len(flags), strict=True))
-    return stated
-
-
-def test_the_readmes_table_lists_the_options_with_their_defaults() -> None:
-    stated = readme_table()
-    assert {flag.replace("-", "_") for flag in stated} == options(fit) - {"reference", "out"}
-    for field, option in (pair for of in ALL_SETTINGS for pair in options_of(of)):
-        if isinstance(field.default, float | int | str) and not isinstance(field.default, bool):
-            shown = field.default if option.show is None else option.show(field.default)
-            said = stated[field.name.replace("_", "-")]
-            assert said == (shown if isinstance(shown, str) else f"{shown:g}"), field.name
 
 
 ASKED = FitSettings(

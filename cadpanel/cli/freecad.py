@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from cadpanel.cli.examples import epilog
 from cadpanel.freecad.install import install as install_addon
 
 freecad = typer.Typer(name="freecad", help="The workbench for FreeCAD.", no_args_is_help=True)
@@ -17,7 +18,7 @@ def of_freecad() -> None:
     """The workbench for FreeCAD."""
 
 
-@freecad.command()
+@freecad.command(epilog=epilog("install"))
 def install(
     to: Annotated[
         Path | None,

@@ -17,6 +17,7 @@ import typer
 
 from cadpanel.cli.compare import compare
 from cadpanel.cli.diff import diff
+from cadpanel.cli.examples import epilog
 from cadpanel.cli.explain import explain
 from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
@@ -40,7 +41,7 @@ EXIT_TERMINATED = 143
 COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, view, features, inspect, explain)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
-app = typer.Typer(name="cadpanel", add_completion=False, pretty_exceptions_enable=False)
+app = typer.Typer(name="cadpanel", pretty_exceptions_enable=False)
 
 
 def _show_version(asked: bool) -> None:
@@ -67,7 +68,7 @@ MOST_SAID = 200
 """Characters of an error that was not foreseen, in its sentence; the rest is in the file."""
 
 for command in COMMANDS:
-    app.command()(command)
+    app.command(epilog=epilog(command.__name__))(command)
 app.add_typer(freecad)
 
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import typer
 
+from cadpanel.cli.groups import OUTPUT, RUN, group_of, rank
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO
 from cadpanel.setting import Option, options_of
@@ -38,9 +39,17 @@ def folder_named(text: str) -> Path:
 
 Out = Annotated[
     Path,
-    typer.Option("--out", metavar="DIR", parser=folder_named, help="Folder to write, whole or not at all."),
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        parser=folder_named,
+        help="Folder to write, whole or not at all.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a delivery that stands there already.")]
+Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="Replace a delivery that stands there already.", rich_help_panel=OUTPUT)
+]
 TimeLimit = Annotated[
     float | None,
     typer.Option(
@@ -48,13 +57,18 @@ TimeLimit = Annotated[
         metavar="SECONDS",
         min=0.001,
         help="End the fit of all panels after so long, with the best so far; what is missed is told.",
+        rich_help_panel=RUN,
     ),
 ]
 TellSteps = Annotated[
     bool,
-    typer.Option("--tell-steps", help="Tell each step as a line of JSON on the error stream, for programs to show."),
+    typer.Option(
+        "--tell-steps",
+        help="Tell each step as a line of JSON on the error stream, for programs to show.",
+        rich_help_panel=RUN,
+    ),
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.", rich_help_panel=RUN)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +172,16 @@ def made_of_settings(command: Callable[..., None]) -> Callable[..., None]:
         options = {one.name for _, _, asked in made.values() for one in asked}
         command(**settings, **{name: value for name, value in given.items() if name not in options})
 
+    shown.sort(key=_place)
     asking.__signature__ = Signature(shown)  # type: ignore[attr-defined] # as inspect reads it, and so typer
     asking.__annotations__ = {parameter.name: parameter.annotation for parameter in shown}
     return asking
+
+
+def _place(parameter: Parameter) -> int:
+    """Where a parameter stands in the help: what has no group first, then group by group."""
+    groups = [getattr(beside, "rich_help_panel", None) for beside in get_args(parameter.annotation)[1:]]
+    return rank(next((group for group in groups if group is not None), None))
 
 
 def _made(kind: type[Any], several: bool, asked: Iterable[_Asked], given: Mapping[str, Any]) -> object:
@@ -191,7 +212,7 @@ def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
             name=name,
             option=option,
             default=field.default,
-            parameter=_parameter(name, hints[name], told, option),
+            parameter=_parameter(name, hints[name], told, option, group_of(settings, name)),
             usual={name: usual[name]} if name in usual else {},
         )
     names = list(found)
@@ -205,7 +226,7 @@ def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
     return [found[name] for name in names]
 
 
-def _parameter(name: str, kind: Any, default: Any, option: Option) -> Parameter:
+def _parameter(name: str, kind: Any, default: Any, option: Option, group: str | None) -> Parameter:
     """The parameter of a command that typer makes an option of."""
     told = option.told and default is not None
     takes = option.takes or kind
@@ -214,7 +235,8 @@ def _parameter(name: str, kind: Any, default: Any, option: Option) -> Parameter:
         Parameter.KEYWORD_ONLY,
         default=(default if option.show is None else option.show(default)) if told else None,
         annotation=Annotated[
-            takes if told else takes | None, typer.Option(flag(name), metavar=option.metavar, help=option.help)
+            takes if told else takes | None,
+            typer.Option(flag(name), metavar=option.metavar, help=option.help, rich_help_panel=group),
         ],
     )
 
@@ -223,8 +245,10 @@ def _listed(asked: _Asked, option: str) -> _Asked:
     """The same setting asked for by a list."""
     what = f"{asked.option.help} Several, with commas between them."
     metavar = f"{(asked.option.metavar or 'X').partition('|')[0]},..."
+    group = get_args(asked.parameter.annotation)[1].rich_help_panel
     parameter = asked.parameter.replace(
-        default=None, annotation=Annotated[str | None, typer.Option(option, metavar=metavar, help=what)]
+        default=None,
+        annotation=Annotated[str | None, typer.Option(option, metavar=metavar, help=what, rich_help_panel=group)],
     )
     return replace(asked, parameter=parameter, each=option)
 

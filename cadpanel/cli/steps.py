@@ -1,14 +1,20 @@
-"""Progress of long steps: bars on a terminal, nothing where the output goes to a file, or lines for programs."""
+"""Progress of long steps: bars on a terminal, lines in a file or a pipe, or lines for programs."""
 
 from __future__ import annotations
 
 import json
 import sys
+import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TextIO
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+
+SILENCE = 4.0
+"""After so many seconds without a line one says which step is still at work, s."""
 
 _DELIVERING = {
     "compare": "Fit two-stage, to compare",
@@ -83,13 +89,58 @@ class ToldSteps(Steps):
         sys.stderr.flush()
 
 
+class WrittenSteps(Steps):
+    """Steps as lines in a file or a pipe: one a round of a fit, and one wherever it was silent for long.
+
+    A run that is short, or refused, writes none but those of its rounds.
+    """
+
+    def __init__(self, progress: Progress, stream: TextIO, silence: float) -> None:
+        """Write to `stream`, never later than `silence` seconds after the line before."""
+        super().__init__(progress)
+        self._stream, self._silence = stream, silence
+        self._step, self._began = "", time.monotonic()
+        self._said, self._over = threading.Event(), threading.Event()
+        self._watch = threading.Thread(target=self._break_silence, daemon=True)
+        self._watch.start()
+
+    def begin(self, step: str, detail: str = "") -> None:
+        """See `Steps.begin`."""
+        super().begin(step, detail)
+        self._step, self._began = step, time.monotonic()
+
+    def solving(self, step: str, count: int, excess: float, rms: float) -> None:
+        """See `Steps.solving`."""
+        super().solving(step, count, excess, rms)
+        self._write(f"{step}: {_solving(count, excess, rms)}")
+
+    def close(self) -> None:
+        """Write nothing any more."""
+        self._over.set()
+        self._said.set()
+        self._watch.join()
+
+    def _write(self, line: str) -> None:
+        self._stream.write(f"{line}\n")
+        self._stream.flush()
+        self._said.set()
+
+    def _break_silence(self) -> None:
+        while not self._over.is_set():
+            if self._said.wait(self._silence):
+                self._said.clear()
+            elif self._step:
+                self._stream.write(f"{self._step}: at work for {time.monotonic() - self._began:.0f} s\n")
+                self._stream.flush()
+
+
 def _solving(count: int, excess: float, rms: float) -> str:
     return f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm"
 
 
 @contextmanager
 def steps(*, quiet: bool, told: bool = False) -> Iterator[Steps]:
-    """Show steps on the terminal's error stream while the block runs, or tell them there as lines for programs."""
+    """Show steps on the error stream while the block runs: bars on a terminal, else lines, for people or programs."""
     console = Console(stderr=True)
     progress = Progress(
         SpinnerColumn(finished_text="[green]ok"),
@@ -100,7 +151,12 @@ def steps(*, quiet: bool, told: bool = False) -> Iterator[Steps]:
         console=console,
         disable=quiet or told or not console.is_terminal,
     )
-    with progress:
-        shown = ToldSteps(progress) if told else Steps(progress)
-        yield shown
-        shown.end()
+    written = None if quiet or told or console.is_terminal else WrittenSteps(progress, sys.stderr, SILENCE)
+    try:
+        with progress:
+            shown = written or (ToldSteps(progress) if told else Steps(progress))
+            yield shown
+            shown.end()
+    finally:
+        if written is not None:
+            written.close()

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
+from cadpanel.cli.groups import OUTPUT
 from cadpanel.cli.steps import Steps, steps
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.records.study import StudyModel
@@ -35,7 +36,11 @@ def study(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", parser=options.folder_named, help="Folder for study.csv, .json, .png and .svg."
+            "--out",
+            metavar="DIR",
+            parser=options.folder_named,
+            help="Folder for study.csv, .json, .png and .svg.",
+            rich_help_panel=OUTPUT,
         ),
     ] = None,
     overwrite: options.Overwrite = False,

@@ -1,4 +1,4 @@
-"""The README's figures, read from the files that a delivery leaves behind.
+"""The figures of `examples/figures.md`, read from the files that a delivery leaves behind.
 
     python -m tests.benchmarks.figures
 

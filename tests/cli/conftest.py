@@ -32,6 +32,8 @@ Run = Callable[..., Answer]
 def run(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Run:
     """Run the program in this process, as if its output went to a file."""
     monkeypatch.delenv("COLUMNS", raising=False)
+    # What is written depends on the run alone, and not on how busy the machine is.
+    monkeypatch.setattr("cadpanel.cli.steps.SILENCE", 3600.0)
 
     def run(*words: object) -> Answer:
         capsys.readouterr()

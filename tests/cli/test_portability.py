@@ -63,10 +63,10 @@ def test_a_run_is_delivered_and_verified_without_what_posix_alone_has(
     elsewhere: dict[str, str], lip_step: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    answer = run(elsewhere, "fit", lip_step, "--out", out)
+    answer = run(elsewhere, "fit", lip_step, "--out", out, "--quiet")
     assert (answer.returncode, answer.stderr) == (0, "")
     assert json.loads((out / "report.json").read_text(encoding="utf-8"))["certificate"]["valid"]
-    answer = run(elsewhere, "verify", out)
+    answer = run(elsewhere, "verify", out, "--quiet")
     assert (answer.returncode, answer.stderr) == (0, "")
 
 

@@ -1,0 +1,52 @@
+"""Whoever reads a pipe is told of every round, and is never left in silence."""
+
+from __future__ import annotations
+
+import io
+import threading
+
+from rich.console import Console
+from rich.progress import Progress
+
+from cadpanel.cli.steps import WrittenSteps
+
+
+class Heard(io.StringIO):
+    """A stream that says when something was written."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.something = threading.Event()
+
+    def flush(self) -> None:
+        self.something.set()
+
+
+def quiet() -> Progress:
+    return Progress(console=Console(file=io.StringIO()), disable=True)
+
+
+def test_a_long_step_says_that_it_is_at_work() -> None:
+    stream = Heard()
+    shown = WrittenSteps(quiet(), stream, 0.01)
+    shown.begin("Read reference", "roof.step")
+    assert stream.something.wait(60.0)
+    shown.close()
+    assert stream.getvalue().startswith("Read reference: at work for 0 s\n")
+    said = stream.getvalue()
+    shown.begin("Build solids")
+    assert stream.getvalue() == said
+
+
+def test_every_round_of_a_fit_is_a_line() -> None:
+    stream = Heard()
+    shown = WrittenSteps(quiet(), stream, 3600.0)
+    shown.begin("Fit each alone")
+    for count in (1, 2):
+        shown.solving("Fit all at once", count, 1.5, 7.25)
+    shown.count("build", 1, 2)
+    shown.close()
+    assert stream.getvalue().splitlines() == [
+        f"Fit all at once: step {count}: worst gap or drift at 1.50 x its limit, RMS deviation 7.25 mm"
+        for count in (1, 2)
+    ]

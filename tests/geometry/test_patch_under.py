@@ -89,13 +89,14 @@ def test_chains_of_which_nothing_turns_have_a_ruling_halfway_too():
     assert begin.b[0] == pytest.approx(walked.edges.b[0, 1], abs=1e-15)
 
 
-def test_half_of_the_turning_is_done_in_the_second_of_three_cones_that_begin_at_the_side():
-    of, sweeps = feature("tri-cone"), (0.4, 1.0, 0.2)
+@pytest.mark.parametrize(("sweeps", "patch"), [((1.0, 0.4, 0.2), 0), ((0.4, 1.0, 0.2), 1), ((0.2, 0.4, 1.0), 2)])
+def test_half_of_the_turning_is_done_in_the_right_one_of_three_cones_that_begin_at_the_side(sweeps, patch):
+    of = feature("tri-cone")
     values = np.zeros((1, len(of.numbers)))
     for i, sweep in enumerate(sweeps):
         values[0, of.patch_slice(i)] = 0.1, 0.0, sweep
     values[0, of.cut_numbers[:, 0]] = -0.5, 0.5
     walked = of.walk(values, derivatives=False)
     begin = middle(walked)
-    assert begin.patch[0] == 1
+    assert begin.patch[0] == patch
     assert walked.edges.b[0, [0, -1]] @ begin.b[0] == pytest.approx(np.cos(0.5 * sum(sweeps)), abs=1e-12)

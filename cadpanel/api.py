@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel import api_result
-from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords, check_made
+from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords
+from cadpanel.api_sheets import Panels, build_sheets, shapes_of, title_of
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from cadpanel.delivery.records.comparison import ComparisonModel
     from cadpanel.delivery.records.report import ReportModel
     from cadpanel.delivery.settings import Ends, Schema
-    from cadpanel.delivery.sheets import PanelSheet
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
     from cadpanel.delivery.shop_settings import ShopKeywords
     from cadpanel.studies.table1 import Progress as CompareProgress
@@ -254,7 +254,7 @@ def unroll(
 
 
 def to_cadquery(
-    panels: FitResult | Panel,
+    panels: Panels,
     *,
     thickness: float = 3.0,
     joint: float = 0.0,
@@ -264,7 +264,7 @@ def to_cadquery(
     """The solids on the stack of a cadquery Workplane, ready for selectors, holes and exports; `.vals()` lists them.
 
     Args:
-        panels: a result, or one of its shapes.
+        panels: a result, one of its shapes, or several.
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
@@ -278,7 +278,7 @@ def to_cadquery(
 
     solids = [
         panel.solid
-        for panel in _build(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
+        for panel in build_sheets(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
     ]
     return to_workplane(solids[0]).newObject([to_cadquery_shape(solid) for solid in solids])
 
@@ -294,7 +294,7 @@ def to_build123d(
 ) -> build123d.Part: ...
 @overload
 def to_build123d(
-    panels: FitResult,
+    panels: FitResult | Sequence[Panel],
     *,
     thickness: float = 3.0,
     joint: float = 0.0,
@@ -302,7 +302,7 @@ def to_build123d(
     **made: Unpack[MadeKeywords],
 ) -> build123d.Compound: ...
 def to_build123d(
-    panels: FitResult | Panel,
+    panels: Panels,
     *,
     thickness: float = 3.0,
     joint: float = 0.0,
@@ -312,7 +312,7 @@ def to_build123d(
     """A build123d Compound whose children are the solids under the panels' names; of one shape, a Part.
 
     Args:
-        panels: a result, or one of its shapes.
+        panels: a result, one of its shapes, or several.
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
         skin_side: "outer" or "inner".
@@ -324,14 +324,14 @@ def to_build123d(
     """
     from cadpanel.brep.building.adapters import to_build123d_compound, to_build123d_part
 
-    built = _build(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
-    if isinstance(panels, FitResult):
-        return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], _title(panels))
+    built = build_sheets(panels, SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side), made)
+    if isinstance(panels, FitResult | Sequence):
+        return to_build123d_compound([(panel.shape.name, panel.solid) for panel in built], title_of(panels))
     return to_build123d_part(built[0].solid, panels.name)
 
 
 def write_step(
-    result: FitResult | Panel,
+    result: Panels,
     path: str | Path,
     *,
     thickness: float = 3.0,
@@ -345,7 +345,7 @@ def write_step(
     """Write one STEP file, one product a panel with its name; for a folder with the proof beside it, see `deliver`.
 
     Args:
-        result: a result, or one of its shapes.
+        result: a result, one of its shapes, or several.
         path: the file; one that is there is replaced once the new one is complete.
         thickness: of the sheet, mm.
         joint: clear width between neighbouring sheets, mm; one of the shapes alone has no neighbours.
@@ -363,27 +363,10 @@ def write_step(
     from cadpanel.delivery.chosen_panels import chosen_panels
     from cadpanel.delivery.outputs.step_files import write_skins, write_solids
 
-    names = [shape.name for shape in result.shapes] if isinstance(result, FitResult) else [result.name]
+    names = [shape.name for shape in shapes_of(result)]
     chosen = set(chosen_panels(names, [panels] if isinstance(panels, str) else panels))
     # All of them are built: a panel's neighbours say how it is cut.
     sheet = SheetKeywords(thickness=thickness, joint=joint, skin_side=skin_side, schema=schema)
-    built = _build(result, sheet, made)
+    built = build_sheets(result, sheet, made)
     own = [panel for panel in built if panel.shape.name in chosen]
-    (write_skins if skins else write_solids)(Path(path), own, _title(result), schema)
-
-
-def _build(panels: FitResult | Panel, sheet: SheetKeywords, made: MadeKeywords) -> tuple[PanelSheet, ...]:
-    from cadpanel.delivery.settings import SheetSettings
-    from cadpanel.delivery.sheets import build_panels
-    from cadpanel.delivery.shop_settings import ShopSettings
-
-    check_made(made)
-    asked = SheetSettings(**sheet, ends=made.get("ends", "bevel"))
-    shop = ShopSettings(fixings=made.get("fixings"), returns=made.get("returns"))
-    if isinstance(panels, FitResult):
-        return build_panels(panels.shapes, asked, panels.reference.seams, None, panels.own_joints(), shop).panels
-    return build_panels([panels], asked, shop=shop).panels
-
-
-def _title(panels: FitResult | Panel) -> str:
-    return Path(panels.reference.source).stem if isinstance(panels, FitResult) else panels.name
+    (write_skins if skins else write_solids)(Path(path), own, title_of(result), schema)

@@ -10,6 +10,7 @@ import cadquery as cq
 import pytest
 
 import cadpanel as cp
+from cadpanel.api_sheets import shapes_of
 from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.step.file import read_step_shapes
 from tests.delivered import fitted, strip
@@ -41,6 +42,17 @@ def test_cadquery_gets_one_solid_a_panel() -> None:
     assert one.val().Volume() == pytest.approx(panels.vals()[1].Volume(), rel=1e-4)
     narrow = cp.to_cadquery(fitted(), thickness=4.0, joint=200.0)
     assert narrow.vals()[1].Volume() == pytest.approx(0.9 * one.val().Volume(), rel=0.02)
+
+
+def test_several_shapes_are_built_like_one_and_none_is_refused(tmp_path: Path) -> None:
+    first, second, _ = fitted().shapes
+    assert [*shapes_of(first)] == [*shapes_of([first])] == [first]
+    assert len(cp.to_cadquery([first, second]).vals()) == 2
+    assert [child.label for child in cp.to_build123d((first, second)).children] == [first.name, second.name]
+    cp.write_step([second, first], tmp_path / "two.step", panels=[first.name])
+    assert [name for name, _ in read_step_shapes(tmp_path / "two.step")] == [first.name]
+    with pytest.raises(cp.SettingsError, match="no panel in the list"):
+        cp.to_cadquery([])
 
 
 def test_solids_are_made_as_a_delivery_makes_them(tmp_path: Path) -> None:

@@ -15,6 +15,8 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn
 
 SILENCE = 4.0
 """After so many seconds without a line one says which step is still at work, s."""
+PACE = 2.0
+"""Between two rounds of a fit that are told at least so many seconds pass, and before the first, s."""
 
 _DELIVERING = {
     "compare": "Fit two-stage, to compare",
@@ -90,15 +92,16 @@ class ToldSteps(Steps):
 
 
 class WrittenSteps(Steps):
-    """Steps as lines in a file or a pipe: one a round of a fit, and one wherever it was silent for long.
+    """Steps as lines in a file or a pipe: rounds of a fit that takes its time, and one wherever it was silent for long.
 
-    A run that is short, or refused, writes none but those of its rounds.
+    A run that is short, or refused, writes none.
     """
 
-    def __init__(self, progress: Progress, stream: TextIO, silence: float) -> None:
-        """Write to `stream`, never later than `silence` seconds after the line before."""
+    def __init__(self, progress: Progress, stream: TextIO, silence: float, pace: float) -> None:
+        """Write to `stream`, never later than `silence` seconds after the line before, and no round before `pace`."""
         super().__init__(progress)
-        self._stream, self._silence = stream, silence
+        self._stream, self._silence, self._pace = stream, silence, pace
+        self._last = time.monotonic()
         self._step, self._began = "", time.monotonic()
         self._said, self._over = threading.Event(), threading.Event()
         self._watch = threading.Thread(target=self._break_silence, daemon=True)
@@ -112,7 +115,8 @@ class WrittenSteps(Steps):
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """See `Steps.solving`."""
         super().solving(step, count, excess, rms)
-        self._write(f"{step}: {_solving(count, excess, rms)}")
+        if time.monotonic() - self._last >= self._pace:
+            self._write(f"{step}: {_solving(count, excess, rms)}")
 
     def close(self) -> None:
         """Write nothing any more."""
@@ -123,6 +127,7 @@ class WrittenSteps(Steps):
     def _write(self, line: str) -> None:
         self._stream.write(f"{line}\n")
         self._stream.flush()
+        self._last = time.monotonic()
         self._said.set()
 
     def _break_silence(self) -> None:
@@ -151,7 +156,7 @@ def steps(*, quiet: bool, told: bool = False) -> Iterator[Steps]:
         console=console,
         disable=quiet or told or not console.is_terminal,
     )
-    written = None if quiet or told or console.is_terminal else WrittenSteps(progress, sys.stderr, SILENCE)
+    written = None if quiet or told or console.is_terminal else WrittenSteps(progress, sys.stderr, SILENCE, PACE)
     try:
         with progress:
             shown = written or (ToldSteps(progress) if told else Steps(progress))

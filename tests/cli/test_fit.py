@@ -374,7 +374,13 @@ def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
 ) -> None:
     (tmp_path / "in").mkdir()
     path, words = bad_files(tmp_path / "in", lip_step)[what]
-    answer = run("fit", path, "--out", tmp_path / "deep" / "out", *(["--thickness", "2000"] if what == "thick" else []))
+    answer = run(
+        "fit",
+        path,
+        "--out",
+        tmp_path / "deep" / "out",
+        *(["--thickness", "2000", "--quiet"] if what == "thick" else []),
+    )
     assert answer.code == 2, answer.err
     assert answer.is_one_sentence(), answer.err
     assert words in answer.err
@@ -384,7 +390,7 @@ def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
 def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path: Path) -> None:
     """A limit on the size of a file stands for the full disk: the operating system refuses the write alike."""
     answer = subprocess.run(
-        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out")],
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--quiet"],
         capture_output=True,
         text=True,
         timeout=120,

@@ -1,4 +1,4 @@
-"""Whoever reads a pipe is told of every round, and is never left in silence."""
+"""Whoever reads a pipe is told of the rounds of a long fit, and is never left in silence."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def quiet() -> Progress:
 
 def test_a_long_step_says_that_it_is_at_work() -> None:
     stream = Heard()
-    shown = WrittenSteps(quiet(), stream, 0.01)
+    shown = WrittenSteps(quiet(), stream, 0.01, 0.0)
     shown.begin("Read reference", "roof.step")
     assert stream.something.wait(60.0)
     shown.close()
@@ -40,7 +40,7 @@ def test_a_long_step_says_that_it_is_at_work() -> None:
 
 def test_every_round_of_a_fit_is_a_line() -> None:
     stream = Heard()
-    shown = WrittenSteps(quiet(), stream, 3600.0)
+    shown = WrittenSteps(quiet(), stream, 3600.0, 0.0)
     shown.begin("Fit each alone")
     for count in (1, 2):
         shown.solving("Fit all at once", count, 1.5, 7.25)
@@ -50,3 +50,12 @@ def test_every_round_of_a_fit_is_a_line() -> None:
         f"Fit all at once: step {count}: worst gap or drift at 1.50 x its limit, RMS deviation 7.25 mm"
         for count in (1, 2)
     ]
+
+
+def test_a_short_fit_tells_none_of_its_rounds() -> None:
+    stream = Heard()
+    shown = WrittenSteps(quiet(), stream, 3600.0, 3600.0)
+    shown.begin("Fit each alone")
+    shown.solving("Fit all at once", 1, 1.5, 7.25)
+    shown.close()
+    assert stream.getvalue() == ""

@@ -24,6 +24,7 @@ from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel, SeamModel
 from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
+from cadpanel.geometry.rewalk import rewalked
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -69,7 +70,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             holes=_expected_holes(part, depth),
             folded=_folded(panel),
             sheet=Sheet(
-                shape=recorded_shape(panel, depth, square=contents.sheet.ends == "square"),
+                shape=rewalked(recorded_shape(panel, depth, square=contents.sheet.ends == "square")),
                 thickness=contents.sheet.thickness,
                 skin_side=contents.sheet.skin_side,
                 holes=() if part.fixings is None else part.fixings.holes,

@@ -19,6 +19,7 @@ from cadpanel.delivery.records.from_shape import patch_models
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
+from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError, PanelError, SettingsError
 from cadpanel.fitting.measures.fit import measure
@@ -26,7 +27,8 @@ from cadpanel.fitting.run import fit
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape
 from fixtures.arrays import reference
-from tests.delivered import STRAIGHT, fitted, fitted_alone
+from tests.delivered import STRAIGHT, fitted, fitted_alone, strip
+from tests.known_panels import moved
 from tests.shapes import random_panel
 
 
@@ -186,3 +188,10 @@ def test_a_run_that_misses_gaps_and_drifts_names_both() -> None:
     assert ["the drift limits are not met" in sentence for sentence in sentences] == [False, True]
     assert all("the step of 3 mm is not met" in sentence for sentence in sentences)
     assert "choose another feature" in sentences[1]
+
+
+def test_a_delivery_hundreds_of_metres_from_the_origin_holds_its_proof(tmp_path: Path) -> None:
+    """What is written down of it loses its last digit, and can be built anew all the same."""
+    away = moved(strip(), np.eye(3), np.array([600_000.0, -80_000.0, 9000.0]))
+    deliver(fit(away), tmp_path / "out", shop=ShopSettings(outputs=("step",)))
+    assert verify(tmp_path / "out").holds

@@ -69,12 +69,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             square=contents.sheet.ends == "square",
             holes=_expected_holes(part, depth),
             folded=_folded(panel),
-            sheet=Sheet(
-                shape=rewalked(recorded_shape(panel, depth, square=contents.sheet.ends == "square")),
-                thickness=contents.sheet.thickness,
-                skin_side=contents.sheet.skin_side,
-                holes=() if part.fixings is None else part.fixings.holes,
-            ),
+            sheet=_sheet(panel, part, contents),
         )
         for panel, part, said, said_of_skin in zip(
             contents.records, contents.parts, solid_data(contents), skin_data(contents), strict=True
@@ -87,6 +82,27 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     record = _record(certificate)
     record = record.model_copy(update={"failures": (*record.failures, *_frame_faults(folder, contents))})
     return Proved(certificate=record, seams=_with_joints(contents.seams, found))
+
+
+def _sheet(panel: PanelModel, part: FlatPart, contents: Contents) -> Sheet | None:
+    """What is built anew; None where patches that are all but flat have numbers too coarse to walk by.
+
+    Such a panel's corners are still held to its patches, and its volume, corners and faces to the files.
+    """
+    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
+    shape = rewalked(recorded_shape(panel, depth, square=contents.sheet.ends == "square"))
+    if not np.abs(shape.corners() - np.array(panel.corners)).max() <= WALKED:
+        return None
+    return Sheet(
+        shape=shape,
+        thickness=contents.sheet.thickness,
+        skin_side=contents.sheet.skin_side,
+        holes=() if part.fixings is None else part.fixings.holes,
+    )
+
+
+WALKED = 5e-7
+"""Distance in mm from its corners within which a panel's numbers must lead from ruling to ruling to build it anew."""
 
 
 def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:

@@ -12,6 +12,7 @@ from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.source_date import source_date
 
 if TYPE_CHECKING:
+    from cadpanel.brep.kernel.types import Shell, Solid
     from cadpanel.brep.step.file import Color
     from cadpanel.brep.step.products import Header
     from cadpanel.brep.step.properties import PartData
@@ -87,25 +88,14 @@ def write_solids(
     Raises:
         DeliveryError: the file cannot be written.
     """
-    from cadpanel.brep.step.file import write_step
-    from cadpanel.brep.step.products import Header
     from cadpanel.brep.step.properties import PartData
     from cadpanel.delivery.part_data import part_number
 
-    shapes = [(panel.shape.name, panel.solid, colour(i)) for i, panel in enumerate(panels)]
     said = data or [
         PartData(number=part_number(title, panel.shape.name), description=panel.shape.feature, validation=panel.check)
         for panel in panels
     ]
-    write_step(
-        path,
-        shapes,
-        title=f"{title} panels",
-        schema=schema,
-        placed=placed,
-        data=said,
-        header=header or Header(date=source_date()),
-    )
+    _write(path, [panel.solid for panel in panels], panels, f"{title} panels", schema, placed, said, header)
 
 
 def write_skins(
@@ -122,24 +112,32 @@ def write_skins(
     Raises:
         DeliveryError: the file cannot be written.
     """
-    from cadpanel.brep.step.file import write_step
-    from cadpanel.brep.step.products import Header
     from cadpanel.brep.step.properties import PartData
     from cadpanel.delivery.part_data import part_number
 
-    shapes = [(panel.shape.name, panel.skin, colour(i)) for i, panel in enumerate(panels)]
     said = data or [
         PartData(number=f"{part_number(title, panel.shape.name)}/skin", validation=panel.skin_check) for panel in panels
     ]
-    write_step(
-        path,
-        shapes,
-        title=f"{title} skins",
-        schema=schema,
-        placed=placed,
-        data=said,
-        header=header or Header(date=source_date()),
-    )
+    _write(path, [panel.skin for panel in panels], panels, f"{title} skins", schema, placed, said, header)
+
+
+def _write(
+    path: Path,
+    shapes: Sequence[Solid | Shell],
+    panels: Sequence[PanelSheet],
+    title: str,
+    schema: Schema,
+    placed: Place,
+    said: Sequence[PartData],
+    header: Header | None,
+) -> None:
+    """One shape of each panel under its name and in its colour."""
+    from cadpanel.brep.step.file import write_step
+    from cadpanel.brep.step.products import Header
+
+    named = [(panel.shape.name, shape, colour(i)) for i, (panel, shape) in enumerate(zip(panels, shapes, strict=True))]
+    header = header or Header(date=source_date())
+    write_step(path, named, title=title, schema=schema, placed=placed, data=said, header=header)
 
 
 def header_of(contents: Contents) -> Header:

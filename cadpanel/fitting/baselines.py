@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.fit import Measures, measure
@@ -11,6 +12,9 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings, Method
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.reference.model import Reference
+
+if TYPE_CHECKING:
+    from cadpanel.fitting.result import FitResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,6 +36,15 @@ class Baselines:
     problem: Problem
     alone: Array
     measured: dict[Method, Measures]
+
+    def told_of(self, reference: Reference) -> Baselines:
+        """See `HeldAgainst.told_of`."""
+        return replace(self, reference=reference)
+
+    def judged_by(self, settings: FitSettings, measures: Measures, parts: tuple[FitResult, ...]) -> Baselines:
+        """See `HeldAgainst.judged_by`."""
+        del parts
+        return replace(self, settings=settings, measured={settings.method: measures})
 
     @property
     def local(self) -> Measures:

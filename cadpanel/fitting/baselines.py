@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.fit import Measures, measure
@@ -12,9 +11,6 @@ from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings, Method
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.reference.model import Reference
-
-if TYPE_CHECKING:
-    from cadpanel.fitting.result import FitResult
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +37,8 @@ class Baselines:
         """See `HeldAgainst.told_of`."""
         return replace(self, reference=reference)
 
-    def judged_by(self, settings: FitSettings, measures: Measures, parts: tuple[FitResult, ...]) -> Baselines:
+    def judged_by(self, settings: FitSettings, measures: Measures) -> Baselines:
         """See `HeldAgainst.judged_by`."""
-        del parts
         return replace(self, settings=settings, measured={settings.method: measures})
 
     @property

@@ -20,7 +20,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.joined import joined
 from cadpanel.fitting.measures.verdict import keeps_limits
-from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.result import FitResult, HeldAgainst
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
@@ -75,7 +75,12 @@ def fit_apart(
         shapes=measures.shapes,
         measures=measures,
         unknowns=_unknowns(parts, found),
-        baselines=JoinedBaselines(reference=reference, places=tuple(parts), parts=tuple(found)),
+        baselines=JoinedBaselines(
+            reference=reference,
+            places=tuple(parts),
+            parts=tuple(result.baselines for result in found),
+            measures=tuple(result.measures for result in found),
+        ),
         tolerance_met=keeps_limits(measures, settings) and all(result.tolerance_met for result in found),
         starts=max(result.starts for result in found),
         agreed=min(result.agreed for result in found),
@@ -96,21 +101,24 @@ class JoinedBaselines:
     Attributes:
         reference: what is approximated.
         places: of the panels of each component.
-        parts: their results.
+        parts: what each is held against.
+        measures: of each.
     """
 
     reference: Reference
     places: tuple[IntArray, ...]
-    parts: tuple[FitResult, ...]
+    parts: tuple[HeldAgainst, ...]
+    measures: tuple[Measures, ...]
 
     def told_of(self, reference: Reference) -> JoinedBaselines:
         """See `HeldAgainst.told_of`."""
         return replace(self, reference=reference)
 
-    def judged_by(self, settings: FitSettings, measures: Measures, parts: tuple[FitResult, ...]) -> JoinedBaselines:
+    def judged_by(self, settings: FitSettings, measures: Measures) -> JoinedBaselines:
         """See `HeldAgainst.judged_by`."""
-        del settings, measures
-        return replace(self, parts=parts)
+        del measures
+        judged = (part.judged_by(settings, own) for part, own in zip(self.parts, self.measures, strict=True))
+        return replace(self, parts=tuple(judged))
 
     @property
     def local(self) -> Measures:

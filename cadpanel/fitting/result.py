@@ -64,8 +64,8 @@ class HeldAgainst(Protocol):
         """The same of a reference with other notes."""
         ...
 
-    def judged_by(self, settings: FitSettings, measures: Measures, parts: tuple[FitResult, ...]) -> HeldAgainst:
-        """The same for a result of these measures as the answer to other settings, whose components are `parts`."""
+    def judged_by(self, settings: FitSettings, measures: Measures) -> HeldAgainst:
+        """The same for a result of these measures as the answer to other settings."""
         ...
 
     @property

@@ -89,7 +89,7 @@ def judged_by(result: FitResult, settings: FitSettings) -> FitResult:
     return replace(
         result,
         settings=settings,
-        baselines=result.baselines.judged_by(settings, result.measures, parts),
+        baselines=result.baselines.judged_by(settings, result.measures),
         parts=parts,
         tolerance_met=keeps_limits(result.measures, settings),
         prices={},

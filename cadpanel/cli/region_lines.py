@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
 
 from cadpanel.cli.printable import printable
-from cadpanel.cli.steps import SILENCE
+from cadpanel.cli.steps import DELIVERING, SILENCE
 from cadpanel.jobs.summary import RowModel
 
 _ENDS = {"made": "made", "kept": "from earlier results", "there": "there already", "none": "no delivery"}
@@ -34,6 +34,7 @@ class RegionLines:
     def tell(self, region: str, step: str, done: int, of: int, detail: str) -> None:
         """Say how far a region is."""
         with self._lock:
+            step = DELIVERING.get(step, step)
             said = step + (f", {done} of {of}" if of > 1 else f", {detail}" if detail else "")
             self._steps[region] = said
             if region not in self._tasks:

@@ -13,7 +13,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from diskcache import Cache
+from diskcache import Cache, Disk
+from diskcache.core import MODE_PICKLE
 from platformdirs import user_cache_path
 
 from cadpanel.errors import SettingsError
@@ -28,6 +29,14 @@ def usual_folder() -> Path:
     return user_cache_path("cadpanel") / "results"
 
 
+class _Plain(Disk):  # type: ignore[misc] # it comes without types
+    """How diskcache stores values, without pickles: whoever can write into the folder could run a program by one."""
+
+    def fetch(self, mode: int, filename: str | None, value: object, read: bool) -> object:
+        """A value from what the index has of it; none where that is a pickle."""
+        return None if mode == MODE_PICKLE else super().fetch(mode, filename, value, read)
+
+
 class Results:
     """A folder of results."""
 
@@ -39,7 +48,7 @@ class Results:
         """
         self._folder = folder
         try:
-            self._cache = Cache(str(folder), size_limit=MOST_BYTES, eviction_policy="least-recently-used")
+            self._cache = Cache(str(folder), disk=_Plain, size_limit=MOST_BYTES, eviction_policy="least-recently-used")
         except (sqlite3.Error, OSError) as error:
             raise self._refusal(error) from error
 

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from diskcache import Cache
 
 from cadpanel.errors import SettingsError
 from cadpanel.jobs.results import Results, usual_folder
@@ -33,6 +34,16 @@ def test_a_damaged_result_is_none_and_is_made_again(tmp_path: Path) -> None:
         (file,) = tmp_path.rglob("*.val")
         file.unlink()
         assert results.get("key") is None
+
+
+def test_nothing_that_would_run_is_loaded(tmp_path: Path) -> None:
+    with Cache(str(tmp_path)) as cache:
+        cache.set("key", {"any": "object"})
+        assert cache.get("key")
+    with Results(tmp_path) as results:
+        assert results.get("key") is None
+        results.put("key", LARGE)
+        assert results.get("key") == LARGE
 
 
 def test_two_runs_may_keep_the_same_at_once(tmp_path: Path) -> None:

@@ -77,7 +77,7 @@ def _say(paper: Paper, part: FlatPart, neighbours: Mapping[str, str], chains: li
     """The name, and inside of every edge what it is called and who is met there."""
     paper.words(part.pattern.name, middle, _NAME, anchor="middle", bold=True, halo=True)
     paper.words("this face out", middle - [0.0, 4.5], 2.5, anchor="middle", halo=True)
-    for edge in dict.fromkeys(part.pattern.edges):
+    for edge in part.size.edges:
         rows = [row for row, own in enumerate(part.pattern.edges) if own == edge]
         longest = max(rows, key=lambda row: round(part.size.pieces[row], 6))
         chain = chains[longest]

@@ -36,7 +36,7 @@ def _write(path: Path, schema: Schema, shapes: list, checks: list) -> None:  # t
     said = [
         PartData(
             number=name,
-            description="Blech 'α'",
+            description="Blech 'ß', 3 mm",
             validation=check,
             material=Material(name="EN AW-5754", density=2700.0),
             attributes={"thickness": 3.0, "feature": "plane-cone-plane", "mass": 7.5},

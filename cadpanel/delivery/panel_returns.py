@@ -8,7 +8,6 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.returns import SIDES, ReturnRule, foldable_sides, with_returns
-from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.trays import edges_round, foldable_edges, folded_tray, is_flat
 
 
@@ -44,7 +43,7 @@ def returned(shape: Panel, sheet: SheetSettings, shop: ShopSettings) -> Returned
         return Returned(shape=shape)
     length, radius = shop.returns
     rule = ReturnRule(length=length, inner_radius=radius)
-    if isinstance(shape, PanelShape | PolygonShape) and is_flat(shape):
+    if is_flat(shape):
         return _tray(shape, rule, sheet)
     if not isinstance(shape, Chain):
         return Returned(shape=shape, notes=("It has no returns: nobody has said how panels of its kind are folded.",))
@@ -60,7 +59,7 @@ def returned(shape: Panel, sheet: SheetSettings, shop: ShopSettings) -> Returned
     )
 
 
-def _tray(shape: PanelShape | PolygonShape, rule: ReturnRule, sheet: SheetSettings) -> Returned:
+def _tray(shape: Panel, rule: ReturnRule, sheet: SheetSettings) -> Returned:
     edges, why = foldable_edges(shape, rule, sheet.thickness, sheet.skin_side)
     if not edges:
         reason = "its edges are too short" if why is None else why

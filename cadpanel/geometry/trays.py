@@ -13,7 +13,6 @@ from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.panel import CutPlane, Panel, PanelEdge, Straightened
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.returns import ReturnRule
-from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.sheet_checks import SkinSide, sheet_depth
 from cadpanel.geometry.tray_plan import Bed, TrayPlan, foldable, plan_tray
 from cadpanel.geometry.vectors import cross
@@ -32,7 +31,7 @@ class TrayShape:
         lift: of this parallel skin, mm along the normals.
     """
 
-    flat: PanelShape | PolygonShape
+    flat: Panel
     returns: tuple[str, ...]
     plan: TrayPlan
     lift: float = 0.0
@@ -176,7 +175,7 @@ def edges_round(shape: Panel) -> tuple[str, ...]:
 
 
 def folded_tray(
-    flat: PanelShape | PolygonShape, returns: tuple[str, ...], rule: ReturnRule, thickness: float, skin_side: SkinSide
+    flat: Panel, returns: tuple[str, ...], rule: ReturnRule, thickness: float, skin_side: SkinSide
 ) -> TrayShape:
     """A flat panel with returns along some edges.
 
@@ -188,7 +187,7 @@ def folded_tray(
 
 
 def foldable_edges(
-    flat: PanelShape | PolygonShape, rule: ReturnRule, thickness: float, skin_side: SkinSide
+    flat: Panel, rule: ReturnRule, thickness: float, skin_side: SkinSide
 ) -> tuple[tuple[str, ...], str | None]:
     """The edges of a flat panel that are long enough for a return; and why its outline allows none.
 
@@ -201,20 +200,18 @@ def foldable_edges(
 
 def is_flat(shape: Panel) -> bool:
     """Whether a panel is one plane with straight edges."""
-    return isinstance(shape, PolygonShape) or (
-        isinstance(shape, PanelShape) and [type(patch) for patch in shape.patches] == [PlanePatch]
-    )
+    return [type(patch) for patch in shape.patches] == [PlanePatch]
 
 
-def _bed(flat: PanelShape | PolygonShape, thickness: float, skin_side: SkinSide) -> Bed:
+def _bed(flat: Panel, thickness: float, skin_side: SkinSide) -> Bed:
     depth = sheet_depth(thickness, skin_side)
     corners = _round(flat.corners())
-    normal = flat.normal if isinstance(flat, PolygonShape) else flat.normals[0]
+    _, _, normals = flat.rulings()
     return Bed(
         name=flat.name,
         corners=corners,
         posts=(_round(flat.offset(depth).corners()) - corners) / depth,
-        normal=normal,
+        normal=normals[0],
         thickness=thickness,
         skin_side=skin_side,
     )

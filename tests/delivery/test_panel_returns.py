@@ -14,7 +14,6 @@ from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.earlier import with_earlier
 from cadpanel.delivery.panel_returns import returned
-from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -113,15 +112,12 @@ def test_a_flat_panel_that_is_not_folded_as_asked_is_seen() -> None:
     assert "not asked for" in " ".join(return_faults(replace(contents, shop=replace(SHOP, returns=None))))
 
 
-def test_a_return_that_is_missing_too_long_or_too_round_is_seen(tmp_path: Path) -> None:
-    report: ReportModel = deliver(fitted(), tmp_path / "out", SheetSettings(), SHOP)
-    _, _, parts = strip_records()
-    contents = Contents(
-        title="t", sheet=SheetSettings(), shop=SHOP, records=report.panels, seams=report.seams, parts=parts
-    )
+def test_a_return_that_is_missing_too_long_or_too_round_is_seen() -> None:
+    records, seams, parts = strip_records(SHOP)
+    contents = Contents(title="t", sheet=SheetSettings(), shop=SHOP, records=records, seams=seams, parts=parts)
     assert return_faults(contents) == ()
     assert "its side 0 has no return" in " ".join(
-        return_faults(replace(contents, records=(report.panels[0].model_copy(update={"returns": ("side 1",)}),)))
+        return_faults(replace(contents, records=(records[0].model_copy(update={"returns": ("side 1",)}),)))
     )
     for returns, said in (
         ((31.0, 2.5), "has a return of 30 mm, 31 mm were asked for"),

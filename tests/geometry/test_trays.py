@@ -39,22 +39,6 @@ def test_the_outer_face_of_each_leg_lies_in_the_plane_of_its_wall_and_is_as_long
             assert ((shape.offset(lift).vertices() - point) @ way).max() < 1e-9
 
 
-@pytest.mark.parametrize("leans", [(0.0, 0.0, 0.0), (0.2, 0.1, -0.2, 0.3), (-0.3,) * 5])
-def test_legs_keep_as_far_apart_at_corners_as_the_sheet_is_thick(leans: tuple[float, ...]) -> None:
-    shape = tray(leans)
-    plan, count = shape.plan, len(leans)
-    # Of both faces where legs begin and where they end, at the start and the stop of every edge.
-    corners = np.stack([shape.offset(lift).vertices() for lift in (0.0, -THICKNESS)])
-    legs = corners[:, 2 * count :].reshape(2, 2, 2, count, 3)
-    for edge in range(count):
-        after = (edge + 1) % count
-        own, other = legs[:, :, 1, edge].reshape(-1, 3), legs[:, :, 0, after].reshape(-1, 3)
-        way = plan.walls[edge] - plan.walls[after]
-        way /= np.linalg.norm(way)
-        assert (own @ way).min() - (other @ way).max() >= THICKNESS - 1e-9
-    assert plan.reliefs.min() >= THICKNESS
-
-
 def test_an_edge_shorter_than_its_leg_stays_flat_and_its_neighbours_end_before_it() -> None:
     shape = flat((0.0, 0.0, 0.0, 0.0))
     near = shape.outline[0] + 0.033 * (shape.outline[1] - shape.outline[0])

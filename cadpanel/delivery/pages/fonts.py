@@ -1,7 +1,7 @@
 """Which font shows which sign: DejaVu for alphabets, fonts that readers have for East Asian signs, codes for others.
 
-DejaVu is put into the file. The East Asian fonts are only named in it, as Adobe's character collections foresee: every
-reader has fonts for them.
+DejaVu is put into the file. The East Asian fonts are only named in it, by Adobe's character collections: readers show
+their own fonts for them, and boxes, not other signs, where they have none.
 """
 
 from __future__ import annotations

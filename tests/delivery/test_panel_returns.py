@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,11 +20,14 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError
+from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.rules.book import rules_of
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.delivered import fitted
 from tests.fitted_grids import fitted as fitted_grid
+from tests.fitted_grids import gable
 from tests.flat_parts import records_of, strip_records
 from tests.instances import random_polygon
 from tests.shapes import random_panel
@@ -84,24 +88,44 @@ def test_edges_without_a_return_say_why() -> None:
         returned(bent, sheet, ShopSettings(returns=(6.0, 2.5)))
 
 
-@pytest.mark.parametrize(("ends", "side"), cases([("bevel", "outer")], [("square", "inner")]))
-def test_flat_panels_are_folded_all_round_and_proved(tmp_path: Path, ends: str, side: SkinSide) -> None:
+def fitted_gable() -> FitResult:
+    """A folded panel whose flange meets a flat pentagon."""
+    book = rules_of({"feature": [{"panels": ["panel 2"], "feature": "planar-polygon"}]})
+    return fit(gable(0.5), FitSettings(feature="plane-cone-plane", rules=book))
+
+
+def fitted_quadrilaterals() -> FitResult:
+    """Nine flat panels with ends and sides."""
+    found: FitResult = fitted_grid("planar-quadrilateral")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("of", "ends", "side"),
+    cases(
+        [(fitted_gable, "square", "outer")],
+        [(fitted_gable, "bevel", "inner"), (fitted_quadrilaterals, "bevel", "outer")],
+    ),
+)
+def test_returns_at_seams_and_round_flat_panels_keep_joints_as_wide_as_asked(
+    tmp_path: Path, of: Callable[[], FitResult], ends: str, side: SkinSide
+) -> None:
     sheet = SheetSettings(ends=ends, skin_side=side, joint=12.0)  # type: ignore[arg-type]
-    report = deliver(fitted_grid("planar-quadrilateral"), tmp_path / "out", sheet, SHOP)
+    report = deliver(of(), tmp_path / "out", sheet, SHOP)
     assert report.certificate.failures == ()
     assert report.certificate.overlap == 0.0
     assert report.certificate.clear is not None
     assert report.certificate.clear.least >= 12.0 - 1e-6
     for panel in report.panels:
-        assert len(panel.returns) == len(panel.bends) == 4
-        assert panel.tray == SHOP.returns
-    # What is told of a panel leads to the same faces; told of another length, or of an edge less, it does not.
+        flat = len(panel.patches) == 1
+        assert panel.tray == (SHOP.returns if flat else None)
+        assert len(panel.returns) == (len(panel.other_face[0]) * len(panel.other_face) if flat else 2)
     assert verify(tmp_path / "out").holds
 
 
 def test_a_flat_panel_that_is_not_folded_as_asked_is_seen() -> None:
-    (record, *_), _, parts = records_of(fitted_grid("planar-quadrilateral"), SHOP)
-    contents = Contents(title="t", sheet=SheetSettings(), shop=SHOP, records=(record,), seams=(), parts=parts[:1])
+    (_, record), _, parts = records_of(fitted_gable(), SHOP)
+    contents = Contents(title="t", sheet=SheetSettings(), shop=SHOP, records=(record,), seams=(), parts=parts[1:])
     assert return_faults(contents) == ()
     for change, said in (
         ({"tray": (31.0, 2.5)}, "returns are 31 mm long"),

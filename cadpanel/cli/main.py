@@ -23,6 +23,7 @@ from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
 from cadpanel.cli.inspect import inspect
+from cadpanel.cli.loft import loft
 from cadpanel.cli.printable import complain, forgive_encodings
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
@@ -38,7 +39,7 @@ EXIT_UNFORESEEN = 3
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
-COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, view, features, inspect, explain)
+COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, view, loft, features, inspect, explain)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
 app = typer.Typer(name="cadpanel", pretty_exceptions_enable=False)

@@ -58,9 +58,9 @@ def test_a_step_is_along_the_gradient_whatever_its_length():
 
 def test_perturbations_are_seeded_counted_and_left_out_where_the_energy_is_low_enough():
     problem, local, _ = begun()
-    shaken = {"restarts": 1, "tau": 1.0}
-    one, other = fitted(seed=4, **shaken), fitted(seed=5, **shaken)
-    again = Annealing().fit(problem, [local], replace(HOW, seed=4, **shaken))
+    how = replace(HOW, restarts=1, tau=1.0)
+    one, other = fitted(restarts=1, tau=1.0, seed=4), fitted(restarts=1, tau=1.0, seed=5)
+    again = Annealing().fit(problem, [local], replace(how, seed=4))
     assert one.starts == again.starts == 2
     assert np.array_equal(one.unknowns, again.unknowns)
     assert one.iterations == again.iterations != other.iterations

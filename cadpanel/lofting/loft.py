@@ -19,6 +19,7 @@ from cadpanel.lofting.kinds import Kind, kind_of
 from cadpanel.lofting.pairing import best_pairing
 from cadpanel.lofting.pieces import Piece, pieces_of
 from cadpanel.lofting.rail import Rail, rail_of
+from cadpanel.lofting.ruled import RuledSurface
 from cadpanel.lofting.settling import settled
 from cadpanel.lofting.warp import squares
 
@@ -119,6 +120,10 @@ class Loft:
     def flat(self) -> tuple[tuple[FlatPiece, ...], FlatError]:
         """It in the plane, and by how much that is wrong; see `flat`."""
         return unrolled(self.pieces)
+
+    def ruled(self) -> tuple[RuledSurface, ...]:
+        """Each piece as a ruled B-spline surface, with its dual form."""
+        return tuple(piece.ruled() for piece in self.pieces)
 
     def rulings(self, count: int) -> Iterator[tuple[Array, Array]]:
         """Of each piece `count` rulings: (count, 3) their ends on both rails, mm."""

@@ -11,6 +11,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from cadpanel.arrays import Array
 from cadpanel.geometry.vectors import cross, norm
 from cadpanel.lofting.rail import Jet, Rail
+from cadpanel.lofting.ruled import RuledSurface
 from cadpanel.lofting.settling import Settled
 from cadpanel.lofting.warp import warp
 
@@ -42,6 +43,11 @@ class Piece:
         """Both edges at (m,) parameters."""
         one, other = (Jet(*(np.asarray(edge(u, nu=order)) for order in range(3))) for edge in self.edges)
         return one, other
+
+    def ruled(self) -> RuledSurface:
+        """It as a ruled B-spline surface."""
+        poles = np.stack([np.asarray(edge.c) for edge in self.edges], axis=1)
+        return RuledSurface(DEGREE, self.edges[0].t, np.concatenate([poles, np.ones((*poles.shape[:2], 1))], axis=-1))
 
     def warp(self, u: Array) -> Array:
         """(m,) angles between the tangent planes at both ends of the rulings; a fan has none."""

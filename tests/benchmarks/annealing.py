@@ -110,9 +110,12 @@ def curves(
         lowest = min(trace[-1][1] for trace in of.values())
         for near in NEAR:
             ours, scipy, paper = (reached(of[name], lowest * (1.0 + near)) for name in ("ours", "scipy", "annealing"))
+            told = f"{paper:13.1f} {paper / ours:8.0f}"
+            if paper == float("inf"):
+                told = f"{f'> {limit:.0f}':>13} {f'> {limit / ours:.0f}':>8}"
             print(
                 f"{fixture:<18} {near:7.1%} {lowest * (1.0 + near):10.1f} {ours:9.3f} {scipy:9.2f} {scipy / ours:6.1f} "
-                f"{paper:13.1f} {paper / ours:8.0f}"
+                f"{told}"
             )
         print(
             f"{fixture:<18} annealing came to {of['annealing'][-1][1]:.1f} mm2 after {of['annealing'][-1][0]:.0f} s",

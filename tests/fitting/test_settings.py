@@ -97,7 +97,7 @@ def test_a_gap_may_weigh_nothing_but_deviation_and_drift_may_not():
             Weights(**how)
 
 
-@pytest.mark.parametrize(("name", "value"), [("method", "annealing"), ("tilt", "loose"), ("feature", "sphere")])
+@pytest.mark.parametrize(("name", "value"), [("method", "magic"), ("tilt", "loose"), ("feature", "sphere")])
 def test_words_that_are_not_known_are_refused_with_those_that_are(name, value):
     how: dict[str, Any] = {name: value}
     with pytest.raises(SettingsError, match=r"concurrent|free|plane-cone-plane"):

@@ -8,12 +8,15 @@ from cadpanel.arrays import Array
 from cadpanel.errors import LoftError
 from cadpanel.geometry.vectors import norm
 from cadpanel.lofting.rail import Rail
+from cadpanel.lofting.warp import warp
 
 LONGEST = 20.0
 """How many times as long as the other a rail may be."""
 # Rails that come nearer to each other than this part of their size meet.
 _APART = 1e-6
 _PLACES, _STEPS = 257, 30
+# A ruling whose tangent planes turn by less, radians, has one.
+_SAME_PLANE = 1e-7
 # One way of joining ends is shorter than the other by more than this share.
 _SHORTER = 1e-9
 
@@ -83,12 +86,15 @@ def _nearest(a: Rail, b: Rail) -> tuple[float, Array]:
 def cut_at_corners(a: Rail, b: Rail) -> list[tuple[Rail, Rail]]:
     """Both rails cut at their corners, the first corner of one with the first of the other, and so on.
 
+    Where lines, arcs and splines meet smoothly on both, at the ends of one ruling, they are cut as well.
+
     Raises:
         LoftError: one of them has more corners.
     """
     corners = a.corners(), b.corners()
     if len(corners[0]) == len(corners[1]):
-        return list(zip(a.cut(corners[0]), b.cut(corners[1]), strict=True))
+        pairs = zip(a.cut(corners[0]), b.cut(corners[1]), strict=True)
+        return [part for pair in pairs for part in _cut_at_joints(*pair)]
     more, fewer = (0, 1) if len(corners[0]) > len(corners[1]) else (1, 0)
     rails = (a, b)
     theirs = np.array([0.0, 1.0, *(rails[fewer].share_of_corner(corner) for corner in corners[fewer])])
@@ -99,6 +105,20 @@ def cut_at_corners(a: Rail, b: Rail) -> list[tuple[Rail, Rail]]:
         f"{_count(len(corners[fewer]))}; that at {at(where)} has none to go with it: round it, or cut the other rail "
         "opposite of it and loft the parts"
     )
+
+
+def _cut_at_joints(a: Rail, b: Rail) -> list[tuple[Rail, Rail]]:
+    """Both rails cut where their stretches meet, as lines and arcs do, if rulings without warp join these places.
+
+    Each part may then be a plane, a cylinder or a cone of its own; else a ruling from such a place ends elsewhere.
+    """
+    joints = a.joints, b.joints
+    if len(joints[0]) != len(joints[1]) or not len(joints[0]):
+        return [(a, b)]
+    if warp(a.at(joints[0]), b.at(joints[1])).max() > _SAME_PLANE:
+        return [(a, b)]
+    every = range(1, len(a.stretches))
+    return list(zip(a.cut(every), b.cut(every), strict=True))
 
 
 def _count(corners: int) -> str:

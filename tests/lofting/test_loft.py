@@ -9,7 +9,7 @@ from scipy.interpolate import BSpline
 from cadpanel.errors import LoftError
 from cadpanel.lofting.kinds import Flat, Round
 from cadpanel.lofting.loft import loft
-from cadpanel.lofting.rail import chained, stretch_through
+from cadpanel.lofting.rail import Stretch, chained, stretch_through
 from tests.known_rails import CONE, CYLINDER, PLANE, TORSE, TWISTED, off_torse, rails
 
 # The issue's figures: warp in radians, distance as a part of the size.
@@ -91,6 +91,24 @@ def test_hoschek_s_distance_finds_the_same_developable_surface():
     other = loft(a, b, distance="tangent-planes")
     assert other.exact
     assert other.flat[1].surface == pytest.approx(spanned("torse").flat[1].surface, rel=1e-9)
+
+
+def test_lines_and_arcs_that_meet_smoothly_become_planes_and_cones():
+    """A bend between two flanges, narrowing towards an apex over the middle of its arc."""
+    weight, apex = np.cos(np.pi / 6.0), np.array([100.0, -50.0 * np.sqrt(3.0), 900.0])
+    corner = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [150.0, 0.0, 0.0]])
+    end = corner[2] + 50.0 * np.array([0.5, -(0.75**0.5), 0.0])
+    arc = Stretch(2, np.repeat([0.0, 1.0], 3), np.array([[*p, 1.0] for p in (corner[1], corner[2], end)]))
+    arc.poles[1] *= weight
+    flat = [stretch_through(np.array(ends)) for ends in (corner[:2], (end, end + 1.6 * (end - corner[2])))]
+    low = [flat[0], arc, flat[1]]
+    high = [Stretch(s.degree, s.knots, 0.6 * s.poles + 0.4 * s.poles[:, 3:] * np.append(apex, 1.0)) for s in low]
+    surface = loft(chained("low", low), chained("high", high))
+    assert [kind.word for kind in surface.kinds if kind is not None] == ["plane", "cone", "plane"]
+    assert surface.max_warp < WARP
+    # Where the other rail is one spline through the same places there are no such places to cut at.
+    points = chained("high", high).at(np.linspace(0.0, 1.0, 60)).point
+    assert len(loft(chained("low", low), points).segments) == 1
 
 
 def test_corners_are_paired_with_corners_and_one_alone_is_refused_with_its_place():

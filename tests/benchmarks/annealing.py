@@ -151,13 +151,13 @@ def _draw(found: dict[str, dict[str, Trace]], path: Path) -> None:
 
 
 @app.command()
-def table1() -> None:
+def table1(tau: Annotated[float, typer.Option("--tau", help="Of annealing, mm.")] = 0.1) -> None:
     """Table 1 in the paper's layout: the largest corner gap at every seam, mm, by fixture and method."""
     columns: list[tuple[str, str, list[float], float]] = []
     for fixture in FIXTURES:
         reference = cp.read(f"fixtures/{fixture}.step")
         for method in METHODS:
-            how = replace(LIKE_THE_PAPER, method=method, tau=1e-3, weights=WEIGHTS if method == "annealing" else None)
+            how = replace(LIKE_THE_PAPER, method=method, tau=tau, weights=WEIGHTS if method == "annealing" else None)
             began = time.process_time()
             result = cp.fit(reference, how)
             seconds = time.process_time() - began

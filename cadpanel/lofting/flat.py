@@ -22,8 +22,8 @@ from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.geometry.vectors import cross, norm
 from cadpanel.lofting.pieces import DEGREE, Piece
 
-# Places in every span between two knots.
-_FINE = 3
+# Places in every span between two knots, and across, along a ruling.
+_FINE, _ACROSS = 3, 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +100,7 @@ def _integral(u: Array, values: Array) -> Array:
 def _areas(piece: Piece, u: Array, image: Array, other: Array, along: Array) -> Array:
     """The areas of the surface and of its image, mm2: both over the rulings' own lengths by Gauss' rule."""
     a, b = piece.jets(u)
-    nodes, weights = np.polynomial.legendre.leggauss(6)
+    nodes, weights = np.polynomial.legendre.leggauss(_ACROSS)
     found = np.zeros((2, len(u)))
     slopes = [np.asarray(_spline(u, line)(u, nu=1)) for line in (image, other)]
     length = norm(b.point - a.point)

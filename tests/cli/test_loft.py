@@ -78,3 +78,12 @@ def test_what_is_read_back_otherwise_is_not_delivered(tmp_path, monkeypatch):
 def test_the_program_s_rails_are_those_of_the_file(file):
     one, other = cp.rails(file, unit="mm")
     assert one.length > other.length > 500.0
+
+
+def test_rails_that_no_surface_fits_are_delivered_all_the_same_with_their_warp(tmp_path):
+    random = np.random.default_rng(8)
+    along = np.linspace(0.0, 1000.0, 6)[:, None]
+    low, high = (np.concatenate([along, random.normal(0.0, 60.0, (6, 2)) + up], axis=1) for up in (0.0, 500.0))
+    record = cp.deliver_loft(cp.loft(low, high), tmp_path / "wild")
+    assert record.max_warp > 5.0
+    assert record.proof.area == pytest.approx(record.flat.area, rel=1e-4)

@@ -34,6 +34,9 @@ WIDTH, STEP, SHIFT = 3.0, 3.0, 3.0
 
 Method = Literal["local", "two_stage", "concurrent", "annealing"]
 
+OF_GAPS = ("gap_tolerance", "joint_tolerance", "step", "shift")
+"""The settings that hold gaps, whose place weights take."""
+
 _WEIGHTS = ("gap", "deviation", "drift")
 
 
@@ -125,7 +128,8 @@ class FitSettings:
         rules: for single panels and seams, see `fitting.rules`; the name of a TOML file, or what it would hold.
         restarts: further starts from perturbed local fits; the best result counts.
         seed: of the perturbations.
-        energy: the paper's E0: the weighted sum of squares, mm2, below which annealing ends; None to use up restarts.
+        energy: the paper's E0: the weighted sum of squares, mm2, of panels that seams connect, below which annealing
+            ends; None to use up all restarts.
         tau: the paper's convergence tolerance: the step, mm, below which annealing is at a stationary point; angles
             count by a panel's length.
     """

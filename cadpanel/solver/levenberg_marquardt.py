@@ -61,10 +61,12 @@ class Stopping:
     Attributes:
         cost: relative decrease that the model still promises, below which it stops.
         iterations: steps tried at most.
+        least: steps tried before it stops for what is promised.
     """
 
     cost: float = 1e-10
     iterations: int = 100
+    least: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +137,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         better = (per_component(ahead.cost) < before) & ~done
         mu, growth = _DAMPING.after(mu, growth, gain, failed)
         # Refused again and again: rounding is all that is left of this component.
-        done |= (hoped <= stopping.cost * before) | (mu >= _DAMPING.most)
+        done |= (mu >= _DAMPING.most) | ((hoped <= stopping.cost * before) & (iterations >= stopping.least))
         if better.any():
             now = ahead
     return Solution(now.unknowns, per_component(now.cost), done, iterations, mu)

@@ -22,7 +22,7 @@ from cadpanel.solver.stop import Stop
 _RACE = ((10, 4.0), (10, 1.2), (20, 1.0), (360, 1.0))
 # A panel has settled where this share of its cost is left to gain: two cones that are nearly one creep on for hundreds
 # of steps to gain a ten-thousandth of their deviation. Samples of what a feature can be exactly are still met exactly.
-_SETTLED = 1e-5
+_SETTLED = 1e-4
 # The first damping, relative.
 _DAMPING = 1e-3
 # A local fit further off than this share of the panel's length is no fit, and normals further off are no skin.

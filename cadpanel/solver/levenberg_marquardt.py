@@ -178,12 +178,14 @@ def _spared(model: Model, now: _Tried, ahead: _Tried, failed: BoolArray, promise
         kept = None if ahead.model is None else ahead.model.where(back, now.normal)
         return _Tried(unknowns, np.where(back, now.cost, ahead.cost), kept)
     harm = _gain(pattern.around(now.cost), pattern.around(ahead.cost), pattern.around(promised)) <= 0.0
-    ahead = _tried(model, np.where((failed[component] & harm)[:, None], now.unknowns, ahead.unknowns), last)
-    costs = (np.bincount(component, one.cost, minlength=pattern.components) for one in (ahead, now))
+    unknowns = np.where((failed[component] & harm)[:, None], now.unknowns, ahead.unknowns)
+    # Mostly this does no good either, and its model is of no use.
+    spared = _tried(model, unknowns, last=True)
+    costs = (np.bincount(component, one.cost, minlength=pattern.components) for one in (spared, now))
     stuck = failed & ~np.less(*costs)
-    if (stuck[component] & ~harm).any() and not stuck.all():
-        ahead = _tried(model, np.where(stuck[component, None], now.unknowns, ahead.unknowns), last)
-    return ahead
+    if stuck.all():
+        return spared
+    return _tried(model, np.where(stuck[component, None], now.unknowns, unknowns), last)
 
 
 def _gain(before: Array, after: Array, promised: Array) -> Array:

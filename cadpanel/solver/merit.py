@@ -58,8 +58,11 @@ class Merit:
 
     def penalized(self, place: Place, barriers: Barriers, mu: Array) -> Array:
         """(count,) the cost with all penalties; `mu` (components,) is the barrier's parameter."""
-        half = 0.5 * barriers.cost(place.at, mu[self._of.label])
-        merit = place.point.cost.copy()
+        return self._penalized(place.point.cost, place.at, barriers, mu)
+
+    def _penalized(self, cost: Array, at: Rowed, barriers: Barriers, mu: Array) -> Array:
+        half = 0.5 * barriers.cost(at, mu[self._of.label])
+        merit = cost.copy()
         for blocks in (self._held.first, self._held.second):
             merit += np.bincount(blocks, half, minlength=len(merit))
         return merit
@@ -100,20 +103,10 @@ class Merit:
         pattern, total = self._model.pattern, self._blocks.total
         point, before = place.point, self.penalized(place, barriers, mu)
 
-        def tried(unknowns: Array) -> tuple[Place, Array]:
-            with np.errstate(all="ignore"):
-                ahead = self.at(unknowns)
-                merit = self.penalized(ahead, barriers, mu)
-            return ahead, np.where(np.isfinite(merit), merit, np.inf)
-
-        def part(unknowns: Array, taken: BoolArray) -> tuple[Place, Array]:
-            """Where only some blocks moved."""
-            if not taken.any():
-                return place, before
-            return tried(np.where(taken[:, None], unknowns, point.unknowns))
-
-        moved = self._model.bounds.clip(point.unknowns + step)
-        ahead, after = tried(np.where(step == 0.0, point.unknowns, moved))
+        with np.errstate(all="ignore"):
+            moved = self._model.bounds.clip(point.unknowns + step)
+            ahead = self.at(np.where(step == 0.0, point.unknowns, moved))
+            after = _finite(self.penalized(ahead, barriers, mu))
         hoped, was = total(promised), total(before)
         gain = (was - total(after)) / np.maximum(np.abs(hoped), 1e-300)
         gain = np.where(np.abs(hoped) <= _ROUNDING * total(point.cost) + least, 1.0, gain)
@@ -122,9 +115,20 @@ class Merit:
         if failed.any():
             harm = ~(pattern.around(before) - pattern.around(after) > 0.0)
             taken = ~(failed[pattern.component] & harm)
-            ahead, after = part(ahead.point.unknowns, taken)
-            stuck = failed & ~(total(after) < was)
-            if (stuck[pattern.component] & taken).any():
+            partly = np.where(taken[:, None], ahead.point.unknowns, point.unknowns)
+            if taken.any():
+                # Mostly this does no good either, and how things change there is of no use.
+                with np.errstate(all="ignore"):
+                    cost, vectors = self._model.cost(partly)
+                    after = _finite(self._penalized(cost, self._held.measured(vectors), barriers, mu))
+                stuck = failed & ~(total(after) < was)
                 taken &= ~stuck[pattern.component]
-                ahead, _ = part(ahead.point.unknowns, taken)
+                partly = np.where(taken[:, None], partly, point.unknowns)
+            with np.errstate(all="ignore"):
+                ahead = self.at(partly) if taken.any() else place
         return Taken(ahead, taken, gain, failed)
+
+
+def _finite(merit: Array) -> Array:
+    """The same, infinite where it is no number."""
+    return np.where(np.isfinite(merit), merit, np.inf)

@@ -161,7 +161,9 @@ def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list
     return gap_terms(problem, allowed, problem.state(unknowns))
 
 
-def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array) -> tuple[Array, int]:
+def gather(
+    problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], start: Array, stopping: Stopping = _FIRST
+) -> tuple[Array, int]:
     """A few steps towards closed seams, and how many."""
     gaps = seam_terms(problem, settings.widest_gap)
     for gap in gaps:
@@ -171,7 +173,7 @@ def gather(problem: Problem, settings: FitSettings, limits: Sequence[HeldTerm], 
     for limit, _ in firm:
         limit.hold.weight = np.full_like(limit.hold.weight, _FIRST_DRIFT)
     model = Objective(problem, [problem.deviation, *gaps, *weighed], coupled=True)
-    solution = levenberg_marquardt(model, start, _FIRST)
+    solution = levenberg_marquardt(model, start, stopping)
     for limit, weight in firm:
         limit.hold.weight = weight
     return solution.unknowns, solution.iterations

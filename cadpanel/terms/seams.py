@@ -129,12 +129,6 @@ def ends_of(parts: Sequence[SeamBatch]) -> tuple[SeamBatch, ...]:
     return (whole,)
 
 
-def with_curved_in_one(parts: Sequence[SeamBatch]) -> tuple[SeamBatch, ...]:
-    """Batches of which some edge is curved; those of which both are in one, of which the outermost corners meet."""
-    both = [one for one in parts if not (one.straight(0) or one.straight(1))]
-    return (*ends_of(both), *(one for one in parts if one.straight(0) != one.straight(1)))
-
-
 def arc_places(layout: Layout, batch: SeamBatch, side: int) -> IntArray:
     """(s, q) the arc points of the batch's edges on one side, by their places among the panels' arc points."""
     features = layout.feature_of
@@ -143,18 +137,13 @@ def arc_places(layout: Layout, batch: SeamBatch, side: int) -> IntArray:
 
 
 def movers(layout: Layout, batch: SeamBatch, side: int) -> Movers:
-    """Inner corners and arc points of the edges on one side, or points on the segment where they are straight.
-
-    Edges with fewer points than others have their last one more than once.
-    """
+    """Inner corners and arc points of the edges on one side, or points on the segment where they are straight."""
     features = layout.feature_of
     corner_count = max(group.feature.corner_count for group in layout.groups)
     rows = []
     for p, e in zip(batch.panels[:, side], batch.edges[:, side], strict=True):
         rows.append(_places(features[p].edges[e], corner_count))
-    most = max(map(len, rows))
-    rows = [row + row[-1:] * (most - len(row)) for row in rows]
-    share = np.array(_STRAIGHT_SHARES if batch.straight(side) else [0.0] * most)
+    share = np.array(_STRAIGHT_SHARES if batch.straight(side) else [0.0] * len(rows[0]))
     return Movers(places=np.array(rows, dtype=np.intp), share=share)
 
 

@@ -26,7 +26,7 @@ from cadpanel.terms.limits.kink import Kink, KinkTerm
 from cadpanel.terms.outermost_gap import OutermostGap
 from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.parts import PARTS
-from cadpanel.terms.seams import SeamBatch, ends_of, with_curved_in_one
+from cadpanel.terms.seams import SeamBatch, ends_of
 from cadpanel.terms.state import State
 from cadpanel.terms.term import HeldTerm
 
@@ -77,9 +77,10 @@ def gap_terms(problem: Problem, gaps: Mapping[str, float | Array], state: State)
     for batch in ends_of(problem.seams) if parts else ():
         ends = OutermostGap(batch, problem.place, problem.layout, tolerance=1.0)
         terms.append(PartedGap(ends, state, own(batch)))
-    for batch in with_curved_in_one(problem.seams) if set(parts) & set(PARTS[: MixedGap.parts]) else ():
-        between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
-        terms.append(PartedGap(between, state, own(batch), share=_ARC_SHARE))
+    for batch in problem.seams if set(parts) & set(PARTS[: MixedGap.parts]) else ():
+        if not (batch.straight(0) and batch.straight(1)):
+            between = MixedGap(batch, problem.place, problem.layout, tolerance=1.0)
+            terms.append(PartedGap(between, state, own(batch), share=_ARC_SHARE))
     return terms
 
 

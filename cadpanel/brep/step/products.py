@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import IO
 
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
@@ -31,34 +32,40 @@ class Header:
     note: str = ""
 
 
-def step_file(
-    shapes: Sequence[tuple[str, TopoDS_Shape, tuple[float, float, float] | None]],
+NamedShape = tuple[str, TopoDS_Shape, tuple[float, float, float] | None]
+"""A name, a shape and its colour, sRGB with components in 0 to 1."""
+
+
+def write_step_text(
+    file: IO[str],
+    shapes: Iterable[NamedShape],
     title: str,
     schema: Schema,
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    data: Sequence[PartData] = (),
+    data: Iterable[PartData] | None = None,
     header: Header | None = None,
-) -> str:
-    """The whole file, the origin of the shapes' coordinates placed somewhere in the assembly, mm.
+) -> None:
+    """Write the whole file, shape by shape, the origin of their coordinates placed somewhere in the assembly, mm.
 
     Args:
-        shapes: names, shapes and colours.
+        file: that is written from its beginning.
+        shapes: names, shapes and colours; each is asked for once all before it are written, and let go of.
         title: name of the assembly.
         schema: "AP242" or "AP214".
         placed: where their origin lies in the assembly.
-        data: what is said of each shape; empty to say nothing but their names.
+        data: what is said of each shape; None to say nothing but their names.
         header: who wrote it, and when.
 
     Raises:
         UnsupportedGeometry: if a shape is not made of exact panels' geometry.
     """
-    text = StepText()
+    text = StepText(file)
     schema_name, protocol, application = SCHEMAS[schema]
+    file.write(_header(title, schema_name, header or Header()))
     frame = _Frame(text, protocol, application, placed)
     assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
     styled = []
-    said = data or [PartData(number=name) for name, _, _ in shapes]
-    for number, ((name, shape, color), part_data) in enumerate(zip(shapes, said, strict=True), start=1):
+    for number, ((name, shape, color), part_data) in enumerate(_told(shapes, data), start=1):
         item = TopologyWriter(text).item(shape)
         solid = shape.ShapeType() == TopAbs_SOLID
         kind = "ADVANCED_BREP_SHAPE_REPRESENTATION" if solid else "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
@@ -68,7 +75,16 @@ def step_file(
             styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
     if styled:
         text.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})")
-    return _header(title, schema_name, header or Header()) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
+    file.write("ENDSEC;\nEND-ISO-10303-21;\n")
+
+
+def _told(shapes: Iterable[NamedShape], data: Iterable[PartData] | None) -> Iterator[tuple[NamedShape, PartData]]:
+    """Each shape and what is said of it."""
+    if data is not None:
+        yield from zip(shapes, data, strict=True)
+        return
+    for shape in shapes:
+        yield shape, PartData(number=shape[0])
 
 
 def _header(title: str, schema_name: str, header: Header) -> str:

@@ -21,15 +21,6 @@ from pathlib import Path
 from shutil import rmtree
 from typing import NamedTuple, TypeVar
 
-from OCP.IFSelect import IFSelect_RetDone
-from OCP.Interface import Interface_Static
-from OCP.STEPCAFControl import STEPCAFControl_Writer
-from OCP.STEPControl import STEPControl_AsIs
-from OCP.TCollection import TCollection_ExtendedString
-from OCP.TDataStd import TDataStd_Name
-from OCP.TDocStd import TDocStd_Document
-from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
 from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, certify
@@ -55,6 +46,7 @@ from cadpanel.geometry.patches import ConePatch
 from cadpanel.reference.model import Reference
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
+from tests.kernel_step import write_by_kernel
 
 Result = TypeVar("Result")
 
@@ -106,20 +98,6 @@ def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helpe
 def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
     cones: dict[bool, PatchKind] = {True: "cone", False: "cylinder"}
     return tuple(cones[patch.half_angle != 0.0] if isinstance(patch, ConePatch) else "plane" for patch in shape.patches)
-
-
-def write_bare(path: Path, built: Sequence[PanelSheet]) -> None:
-    """What OCCT's XCAF writer makes of the same solids and names, left to its own settings."""
-    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
-    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    for panel in built:
-        label = tool.AddShape(panel.solid, False)
-        TDataStd_Name.Set_s(label, TCollection_ExtendedString(panel.shape.name, True))
-    writer = STEPCAFControl_Writer()
-    Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
-    writer.Transfer(document, STEPControl_AsIs)
-    if writer.Write(str(path)) != IFSelect_RetDone:
-        raise OSError(f"{path} could not be written")
 
 
 class Took(NamedTuple):
@@ -184,7 +162,8 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
     count_interpreter(seconds, "verify", before)
     if not certificate.holds:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")
-    timed(seconds, "XCAF writer", lambda: write_bare(folder / "bare.step", built))
+    bare = [(one.shape.name, one.solid) for one in built]
+    timed(seconds, "XCAF writer", lambda: write_by_kernel(folder / "bare.step", bare))
     for_the_shop(seconds, folder, reference, built)
     return seconds
 

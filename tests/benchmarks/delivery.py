@@ -24,7 +24,7 @@ from typing import NamedTuple, TypeVar
 from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, certify
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind, Sheet
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.outputs.catalogue import OUTPUTS
@@ -81,7 +81,13 @@ def local_shapes(reference: Reference) -> tuple[Panel, ...]:
 def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helper: Helper | None) -> Certificate:
     """The certificate of both files, every seam measured."""
     expected = [
-        ExpectedPanel(name=one.shape.name, volume=one.volume, kinds=_kinds(one.shape), corners=one.shape.corners())
+        ExpectedPanel(
+            name=one.shape.name,
+            volume=one.volume,
+            kinds=_kinds(one.shape),
+            corners=one.shape.corners(),
+            sheet=Sheet(shape=one.shape, thickness=SheetSettings().thickness, skin_side=SheetSettings().skin_side),
+        )
         for one in built
     ]
     names = [panel.name for panel in reference.panels]

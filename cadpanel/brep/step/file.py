@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -19,6 +19,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
 from cadpanel.brep.files.xcaf import products_of
+from cadpanel.brep.step.part_files import PartFile, write_assembly_text
 from cadpanel.brep.step.products import Header, NamedShape, write_step_text
 from cadpanel.brep.step.properties import ATTRIBUTES, PartData, Stated
 from cadpanel.brep.step.schemas import Schema
@@ -60,6 +61,33 @@ def write_step(
         _write_whole(target, lambda file: write_step_text(file, shapes, title, schema, placed, data, header))
     except UnsupportedGeometry as error:
         raise DeliveryError(f"{target} cannot be written: it would hold {error}, not an exact panel.") from error
+
+
+def write_assembly(
+    path: str | os.PathLike[str],
+    parts: Sequence[PartFile],
+    *,
+    title: str,
+    schema: Schema = "AP242",
+    header: Header | None = None,
+) -> None:
+    """Write an assembly of STEP files that lie beside it, whole or not at all.
+
+    Args:
+        path: the file; an existing one is replaced once the new one is complete.
+        parts: the files, in their order; they need not be there yet. Names must differ.
+        title: name of the assembly.
+        schema: "AP242" or "AP214".
+        header: who wrote it, and when.
+
+    Raises:
+        DeliveryError: it cannot be written, or a file's path has letters that readers of STEP do not find again.
+    """
+    target = Path(path)
+    for part in parts:
+        if not part.path.isascii():
+            raise DeliveryError(f"{target} cannot be written: '{part.path}' has other letters than ASCII; rename it.")
+    _write_whole(target, lambda file: write_assembly_text(file, parts, title, schema, header))
 
 
 def _write_whole(target: Path, write: Callable[[IO[str]], None]) -> None:

@@ -139,7 +139,7 @@ def count_interpreter(seconds: dict[str, Took], step: str, before: float) -> Non
     seconds[step] = took._replace(processor=took.processor + now().processor - before)
 
 
-def run(panels: int, folder: Path) -> dict[str, Took]:
+def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Took]:
     """Seconds of every step, the bare writer's last."""
     silence_kernel()
     start_reader()  # as a command does, before it loads the kernel itself
@@ -170,12 +170,14 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")
     bare = [(one.shape.name, one.solid) for one in built]
     timed(seconds, "XCAF writer", lambda: write_by_kernel(folder / "bare.step", bare))
-    for_the_shop(seconds, folder, reference, built)
+    for_the_shop(seconds, folder, reference, built, outputs)
     return seconds
 
 
-def for_the_shop(seconds: dict[str, Took], folder: Path, reference: Reference, built: Sequence[PanelSheet]) -> None:
-    """What a shop gets besides STEP: flat parts, every other output, and the proof of them."""
+def for_the_shop(
+    seconds: dict[str, Took], folder: Path, reference: Reference, built: Sequence[PanelSheet], outputs: Sequence[str]
+) -> None:
+    """What a shop gets besides STEP: flat parts, other outputs, all if none is named, and the proof of them."""
     sheet, shop = SheetSettings(), ShopSettings()
     parts = timed(seconds, "flat parts", lambda: flat_parts([one.shape for one in built], sheet, shop))
     records = with_flat_parts([record(one) for one in built], built, parts, shop.density)
@@ -188,7 +190,8 @@ def for_the_shop(seconds: dict[str, Took], folder: Path, reference: Reference, b
         seams=seams_of(reference),
         parts=parts,
     )
-    timed_ones = [output for output in OUTPUTS if not output.always and output.name != "html"]  # a page shows a fit
+    wanted = {*outputs} or {output.name for output in OUTPUTS} - {"html"}  # a page shows a fit
+    timed_ones = [output for output in OUTPUTS if not output.always and output.name in wanted]
     for output in timed_ones:
         for name in output.folders:
             rmtree(folder / name, ignore_errors=True)
@@ -237,11 +240,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Time a delivery against OCCT's own STEP writer.")
     parser.add_argument("--panels", type=int, default=1000)
     parser.add_argument("--runs", type=int, default=1)
+    parser.add_argument("--outputs", nargs="*", default=(), help="time these besides STEP; all if none is named")
     parser.add_argument("--folder", type=Path, help="keep the files there, and use the strip that is there")
     chosen = parser.parse_args()
     for _ in range(chosen.runs):
         with tempfile.TemporaryDirectory() as temporary:
-            seconds = run(chosen.panels, chosen.folder or Path(temporary))
+            seconds = run(chosen.panels, chosen.folder or Path(temporary), chosen.outputs)
         print_table(chosen.panels, seconds)
 
 

@@ -36,7 +36,7 @@ FEWEST_ACROSS, ACROSS_A_SPAN, MOST_ACROSS = 4, 2, 32
 EVEN = (GeomAbs_Plane, GeomAbs_Cylinder)
 # Gauss points each way over each span of a whole face, more and more until two areas agree to within this part, or a
 # face would have more points than so many.
-OVER_SPAN = (2, 3, 6, 12, 24)
+OVER_SPAN = (2, 4, 8, 16, 24)
 AGREE = 1e-5
 MOST_POINTS = 500_000
 # About so many points of whole faces are evaluated at once.

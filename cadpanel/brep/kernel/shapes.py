@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from io import BytesIO
 
-from OCP.BinTools import BinTools, BinTools_FormatVersion
+from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Builder
+from OCP.BRepTools import BRepTools
 from OCP.Message import Message_ProgressRange
-from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
-
-_BINARY_HEAD = b"\nOpen CASCADE Topology V1"
+from OCP.TopTools import TopTools_FormatVersion
 
 
 def shapes_of(
@@ -74,19 +73,16 @@ def unpacked(data: bytes) -> TopoDS_Shape:
     return shape
 
 
-def kept_binary(shape: TopoDS_Shape) -> bytes:
-    """A shape in the first version of the kernel's binary form, which all programs read, without triangles."""
-    stream, version = BytesIO(), BinTools_FormatVersion.BinTools_FormatVersion_VERSION_1
-    BinTools.Write_s(shape, stream, False, False, version, Message_ProgressRange())
+def brep_text(shape: TopoDS_Shape) -> bytes:
+    """A shape as the text of a .brep file, vertices to 15 digits, in its first version, which all programs read."""
+    stream = BytesIO()
+    version = TopTools_FormatVersion.TopTools_FormatVersion_VERSION_1
+    BRepTools.Write_s(shape, stream, False, False, version, Message_ProgressRange())
     return stream.getvalue()
 
 
-def kept_shape(data: bytes) -> TopoDS_Shape:
-    """The shape again; a null one where the data are none."""
+def shape_of_text(text: bytes) -> TopoDS_Shape:
+    """The shape again; a null one where the text is none."""
     shape = TopoDS_Shape()
-    if data.startswith(_BINARY_HEAD):
-        try:
-            BinTools.Read_s(shape, BytesIO(data))
-        except (Standard_Failure, RuntimeError):
-            return TopoDS_Shape()
+    BRepTools.Read_s(shape, BytesIO(text), BRep_Builder())
     return shape

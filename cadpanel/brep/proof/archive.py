@@ -1,4 +1,4 @@
-"""Archives that keep shapes, as FreeCAD's documents do: read through the kernel and measured."""
+"""Archives that keep shapes as text, as FreeCAD's documents do: read through the kernel and measured."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cadpanel.brep.building.mass_properties import areas_and_centroids
 from cadpanel.brep.building.sheet import volume_of
-from cadpanel.brep.kernel.shapes import faces_of, kept_shape, shapes_of
+from cadpanel.brep.kernel.shapes import faces_of, shape_of_text, shapes_of
 from cadpanel.brep.proof.inspection import vertices_of
 from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.errors import DeliveryError
 
-SHAPE_ENDING = ".bin"
+SHAPE_ENDING = ".brp"
 
 
 def kept_facts(path: Path) -> dict[str, KeptFacts]:
@@ -29,16 +29,16 @@ def kept_facts(path: Path) -> dict[str, KeptFacts]:
     """
     try:
         with ZipFile(path) as archive:
-            kept = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
+            texts = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
     except OSError as error:
         raise DeliveryError(f"'{path}' cannot be read: {error.strerror or error}.") from error
     except (BadZipFile, zlib.error) as error:
         raise DeliveryError(f"'{path}' cannot be read: it is damaged ({error}); write the delivery again.") from error
-    return {name: _measured(path, name, data) for name, data in kept.items()}
+    return {name: _measured(path, name, text) for name, text in texts.items()}
 
 
-def _measured(path: Path, name: str, data: bytes) -> KeptFacts:
-    shape = kept_shape(data)
+def _measured(path: Path, name: str, text: bytes) -> KeptFacts:
+    shape = shape_of_text(text)
     if shape.IsNull():
         raise DeliveryError(f"'{path}' cannot be read: the shape '{name}' in it is damaged; write the delivery again.")
     solids = len(shapes_of(shape, TopAbs_SOLID))

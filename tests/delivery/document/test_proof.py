@@ -11,7 +11,7 @@ import pytest
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.drawn import flat_face
-from cadpanel.brep.kernel.shapes import kept_binary
+from cadpanel.brep.kernel.shapes import brep_text
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.document.archive import archive_bytes
 from cadpanel.delivery.document.proof import edge_row, prove_document
@@ -136,7 +136,7 @@ def test_whatever_is_changed_shows(
 
 
 def test_what_cannot_be_read_is_refused(delivery: Delivery, written: bytes, tmp_path: Path) -> None:
-    with pytest.raises(DeliveryError, match=r"the shape 'panel1\.bin' in it is damaged"):
+    with pytest.raises(DeliveryError, match=r"the shape 'panel1\.brp' in it is damaged"):
         prove_document(changed(written, tmp_path, replaced(panel_file(0), b"no shape")), delivery)
     (tmp_path / "cut.FCStd").write_bytes(written[:1000])
     with pytest.raises(DeliveryError, match="it is damaged"):
@@ -190,7 +190,7 @@ def test_flat_patterns_do_not_lie_on_each_other(delivery: Contents) -> None:
     boxes = [(contour[:, :2].min(axis=0), contour[:, :2].max(axis=0)) for contour, *_ in laid_out(delivery)]
     for i, (low, high) in enumerate(boxes):
         assert all((high < others_low).any() or (low > others_high).any() for others_low, others_high in boxes[:i])
-    assert kept_binary(flat_face(*laid_out(delivery)[0])).startswith(b"\nOpen CASCADE Topology V1")
+    assert brep_text(flat_face(*laid_out(delivery)[0])).startswith(b"\nCASCADE Topology V1")
 
 
 def test_holes_are_in_flat_patterns_and_each_of_them_is_missed(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_holes_are_in_flat_patterns_and_each_of_them_is_missed(tmp_path: Path) -
     for other in (holes[1:], holes + [[0.001, 0.0, 0.0]] * (holes[:, :1] == holes[0, 0])):
 
         def change(files: Files, other: Array = other) -> None:
-            files[flat_file(1)] = kept_binary(flat_face(contour, lines, other))
+            files[flat_file(1)] = brep_text(flat_face(contour, lines, other))
 
         failures = prove_document(changed(written, tmp_path, change), drilled).failures
         assert failures == ("'panels.FCStd': panel 'N 2': the holes in its flat pattern are not those of the report.",)

@@ -23,6 +23,7 @@ from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import limit_setting
 from cadpanel.terms.limits.min_radius import MinRadius
 from cadpanel.terms.limits.outline_drift import DriftOutline
+from cadpanel.terms.limits.seam_level import SeamLevel
 from cadpanel.terms.limits.seam_turn import SeamTurn
 from cadpanel.terms.parts import PARTS
 
@@ -115,6 +116,8 @@ class FitSettings:
         seam_turn: degrees that ends, and edges on seams, may turn from the drawn ones.
         evenness: how far corners on seams may lie off the middle between those of the seams before and after, against
             the drawing, as a share of the panel's length.
+        seam_level: mm to either side that seams which are drawn level, in a ring that lies in one plane, may leave
+            that plane; 1000 for any.
         max_kink: degrees between neighbouring skins across a seam; 180 for any.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
@@ -161,6 +164,7 @@ class FitSettings:
     )
     seam_turn: float = limit_setting(SeamTurn)
     evenness: float = limit_setting(Evenness)
+    seam_level: float = limit_setting(SeamLevel)
     max_kink: float = limit_setting(Kink)
     drift_along: float = limit_setting(DriftAlong)
     drift_across: float = limit_setting(DriftAcross)
@@ -297,7 +301,7 @@ def _require_weights(value: object) -> None:
         raise SettingsError(f"the weights must be Weights or None, not {value!r}")
 
 
-LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
+LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, seam_level=1000.0, drift_along=0.05)
 """What Table 1 is made under if nothing else is asked for: it is about how far gaps close, and its seams may lean."""
 
 
@@ -315,6 +319,7 @@ class FitKeywords(TypedDict, total=False):
     weights: Weights | None
     seam_turn: float
     evenness: float
+    seam_level: float
     max_kink: float
     drift_along: float
     drift_across: float

@@ -47,6 +47,7 @@ class ComparisonSettingsModel(Record):
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
         drift_outline: how far the free outline might leave the drawn one; 0.5 for any.
+        seam_level: how far level seams might leave their planes to either side, mm; 1000 for any.
         min_radius: tightest radius that was allowed anywhere, mm.
         blend: which stretches were to become curved patches, where the user said so.
         restarts: further starts.
@@ -65,6 +66,7 @@ class ComparisonSettingsModel(Record):
     drift_along: NonNegative
     drift_across: NonNegative
     drift_outline: NonNegative = 0.5
+    seam_level: NonNegative = 1000.0
     min_radius: NonNegative = 0.0
     blend: tuple[str, ...] = ()
     restarts: NonNegativeCount

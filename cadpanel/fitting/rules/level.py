@@ -17,9 +17,10 @@ from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, seams_betw
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
 from cadpanel.terms.limits.limit import Panels
-from cadpanel.terms.rules.heights import UP, HeightTerm
+from cadpanel.terms.limits.planes import PlaneTerm
 from cadpanel.terms.term import HeldTerm
 
+UP = np.array([0.0, 0.0, 1.0])
 # A drawn edge that rises by less than this share of its length is meant to be level.
 _LEVEL = 0.05
 _MARGIN = 1e-3
@@ -89,9 +90,11 @@ class _Level(Posed):
         # The places of a panel's own points among all that stand in one row.
         found = {panel: places_in(panels.layout, panel) for panel in np.unique(self._own).tolist()}
         places = np.array([found[panel][point] for panel, point in zip(self._own, self._where, strict=True)])
-        heights = (self._heights - place.centre @ UP) / place.length
+        # In a panel's own frame: which way is up, and how high over its origin the seam is drawn.
+        up = UP @ place.axes[self._own]
+        heights = (self._heights - (place.origins[self._own] + place.centre) @ UP) / place.length
         within = np.full(len(places), 0.5 * (1.0 - _MARGIN) * self._within / place.length)
-        return [HeightTerm(self._own, places, heights, within, place)]
+        return [PlaneTerm(self._own, places, up, heights, within, panels.layout.panels, gives_way=True)]
 
     def outcome(self, fitted: Fitted) -> Outcome:
         """See `Posed.outcome`: twice the largest distance from a height."""

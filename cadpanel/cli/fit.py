@@ -148,6 +148,7 @@ def _find(
     _begin_to_read(file, how, shown)
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.deliver import fill_delivery
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import MOST, fewest_panels
 
     seconds_to_read = 0.0
@@ -171,7 +172,7 @@ def _find(
                 shown.solving(name, step, excess, rms)
             return not interrupted.heard()
 
-        found = fewest_panels(read, settings, progress=tell, time_limit=time_limit)
+        found = fewest_panels(read, settings, progress=tell, time_limit=time_limit, prepare=with_earlier)
     report = fill_delivery(
         found.result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
     )

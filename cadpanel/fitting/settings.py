@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, get_args
 
@@ -270,6 +270,11 @@ class FitSettings:
     def widest_gap(self) -> float:
         """The most that is allowed of gaps, or of one of their parts, mm."""
         return max(self.gaps.values())
+
+    def alone(self, method: Method = "local") -> FitSettings:
+        """The same for a method that does not fit all panels at once, with those rules that it can follow."""
+        rules = None if self.rules is None else self.rules.of_panels_alone()
+        return replace(self, method=method, rules=rules)
 
     @property
     def automatic(self) -> bool:

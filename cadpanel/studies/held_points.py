@@ -90,7 +90,7 @@ def judged_by(result: FitResult, settings: FitSettings) -> FitResult:
         result,
         settings=settings,
         baselines=replace(result.baselines, settings=settings, measured={settings.method: result.measures}),
-        tolerance_met=keeps_limits(result.measures, settings),
+        tolerance_met=keeps_limits(result.measures, settings) and all(outcome.kept for outcome in result.outcomes),
         prices={},
     )
 

@@ -18,7 +18,7 @@ from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 
-OF_A_COLUMN = ("feature", "max_deviation", "method", "rules")
+OF_A_COLUMN = ("feature", "max_deviation", "method")
 """The settings of a fit that a comparison chooses itself, for each column its own, or does without."""
 # Where a record calls a setting by another name.
 _KEYS = {"schema": "step_schema"}
@@ -50,6 +50,7 @@ class ComparisonSettingsModel(Record):
         seam_level: how far level seams might leave their planes to either side, mm; 1000 for any.
         min_radius: tightest radius that was allowed anywhere, mm.
         blend: which stretches were to become curved patches, where the user said so.
+        rules: for single panels and seams, as a file of rules has them; None without any.
         restarts: further starts.
         seed: of the random numbers.
         seam_tolerance: how far the ends of two panels that meet might lie apart in the reference, mm.
@@ -69,6 +70,7 @@ class ComparisonSettingsModel(Record):
     seam_level: NonNegative = 1000.0
     min_radius: NonNegative = 0.0
     blend: tuple[str, ...] = ()
+    rules: dict[str, Any] | None = None
     restarts: NonNegativeCount
     seed: int
     seam_tolerance: NonNegative
@@ -82,7 +84,6 @@ class SettingsModel(ComparisonSettingsModel):
         composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
         max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         method: name of the method.
-        rules: for single panels and seams, as a file of rules has them; None without any.
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
             nothing is said of sheets that overlap, either.
@@ -110,7 +111,6 @@ class SettingsModel(ComparisonSettingsModel):
     composition: tuple[str, ...] | None = None
     max_deviation: Annotated[float, Field(gt=0.0)] | None = None
     method: Method
-    rules: dict[str, Any] | None = None
     thickness: NonNegative
     joint: NonNegative | None = None
     ends: Literal["bevel", "square"] = "bevel"

@@ -45,7 +45,7 @@ _TIGHTENINGS = 8
 _NEARLY = 20.0
 # What must be kept exceeds its limit beyond rounding.
 _FIRM = 1.0 + 1e-5
-# What gives way last does so only where that lets the excess fall to this share.
+# What gives way last does so only where that lets the excess, or the deviation, fall to this share.
 _HELPS = 0.5
 # Limits that give way with gaps where what panels must keep to cannot be kept beside them, the first ones first.
 _YIELDING = tuple(
@@ -135,9 +135,9 @@ def _hold_seams(
 
 
 def _worth_it(found: HeldSolution, again: HeldSolution) -> BoolArray:
-    """(components,) where what gave way last helped what must hold: else it stays held."""
-    firm, now = found.end.best.firm, again.end.best.firm
-    return np.asarray((now <= _FIRM) | (now <= _HELPS * firm))
+    """(components,) where what gave way last helped what must hold, or the deviation by far: else it stays held."""
+    one, other = found.end.best, again.end.best
+    return np.asarray((other.firm <= np.maximum(_FIRM, _HELPS * one.firm)) | (other.cost <= _HELPS**2 * one.cost))
 
 
 def _tightened(

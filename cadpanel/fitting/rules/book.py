@@ -31,6 +31,10 @@ class Rules:
         """Whether some of them need a fit of all panels at once that holds tolerances."""
         return any(rule.of_fit for rule in self.rules)
 
+    def of_panels_alone(self) -> Rules:
+        """Those that count where panels are not fitted at once, too: their features."""
+        return Rules(tuple(rule for rule in self.rules if not rule.of_fit))
+
     def features(self, names: Sequence[str]) -> dict[int, str]:
         """The features of single panels by their places; what comes later counts.
 

@@ -65,6 +65,7 @@ def test_every_rule_of_the_catalogue_is_read_and_read_back(tmp_path: Path) -> No
         ({"equal": [{"panels": 3, "radius": True}]}, "names like 'NW-03'"),
         ({"kinds": {"most": 0}}, "at least 1"),
         ({"kinds": {"most": True}}, "are a number"),
+        ({"kinds": {"most": 2, "of": "moulds"}}, "of 'bends' or of 'radii', not of 'moulds'"),
         ({"seam": [{"between": ["A"], "step": 1}]}, "between two panels"),
         ({"seam": [{"between": ["A", "B"]}]}, "gap, width, step or shift, or its joint"),
         ({"seam": [{"between": ["A", "B"], "step": -1}]}, "at least 0.001 mm"),

@@ -18,8 +18,15 @@ FOLD, ALL_ROUND = "plane-cone-plane", "own double fold"
 def alike(problem, what):
     pairs = problem.pairs
     bends = sum(problem.layout.feature_of[0].curved)
+    sides = np.array([1.0, -1.0, 1.0])
     return AlikeTerm(
-        pairs[:, 0], pairs[:, 1], np.arange(len(pairs)), bends=bends, what=what, within=0.1, panels=problem.panels
+        pairs[:, 0],
+        pairs[:, 1],
+        np.arange(len(pairs)),
+        bends=bends,
+        what=what,
+        within=0.1,
+        sides=sides,
     )
 
 

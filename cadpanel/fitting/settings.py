@@ -241,6 +241,8 @@ class FitSettings:
                 "all rules but [[feature]] are held while all panels are fitted at once within tolerances: leave out "
                 "the weights, or the method"
             )
+        for rule in self.rules.rules:
+            rule.check(self.allowed)
 
     @property
     def allowed(self) -> dict[str, float]:

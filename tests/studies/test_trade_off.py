@@ -6,7 +6,9 @@ from functools import cache
 import pytest
 
 from cadpanel.errors import SettingsError
+from cadpanel.fitting.rules.book import rules_of
 from cadpanel.fitting.settings import FitSettings, Weights
+from cadpanel.studies.prepared import unprepared
 from cadpanel.studies.trade_off import trade_off
 from tests.delivered import strip
 from tests.thorough import thorough
@@ -49,12 +51,12 @@ def test_two_gaps_make_no_knee():
 
 
 def test_every_point_holds_the_rules_and_rules_learn_of_the_reference():
-    rules = {"seam": [{"between": ["N 1", "N 2"], "step": 0.3}]}
+    rules = rules_of({"seam": [{"between": ["N 1", "N 2"], "step": 0.3}]})
     prepared = []
 
     def prepare(how, reference):
         prepared.append(reference.source)
-        return replace(how, rules=rules)
+        return replace(unprepared(how, reference), rules=rules)
 
     points = trade_off([strip], [FitSettings(gap_tolerance=gap) for gap in GAPS], prepare=prepare)
     assert prepared == [strip().source] * 2

@@ -278,6 +278,7 @@ class SummaryModel(Record):
     max_shift: NonNegative = 0.0
     max_kink: NonNegative
     max_unevenness: NonNegative = 0.0
+    max_off_level: NonNegative | None = None
     rms_deviation: NonNegative
     max_deviation: NonNegative
     hausdorff: NonNegative

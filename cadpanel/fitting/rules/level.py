@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,7 +14,7 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.panel_edges import Edge
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.boundary import boundary_of, places_in
-from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, seams_between, words_of
+from cadpanel.fitting.rules.rule import Fitted, Outcome, Place, Posed, Rule, seams_between, words_of
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
 from cadpanel.terms.limits.limit import Panels
@@ -95,6 +96,12 @@ class _Level(Posed):
         heights = (self._heights - (place.origins[self._own] + place.centre) @ UP) / place.length
         within = np.full(len(places), 0.5 * (1.0 - _MARGIN) * self._within / place.length)
         return [PlaneTerm(self._own, places, up, heights, within, panels.layout.panels, gives_way=True)]
+
+    def places(self) -> list[Place]:
+        """See `Posed.places`: where in x and y does not matter."""
+        within = (math.inf, math.inf, 0.5 * self._within)
+        points = zip(self._own.tolist(), self._where.tolist(), self._heights.tolist(), strict=True)
+        return [Place(self._rule, panel, point, (0.0, 0.0, height), within) for panel, point, height in points]
 
     def outcome(self, fitted: Fitted) -> Outcome:
         """See `Posed.outcome`: twice the largest distance from a height."""

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
@@ -166,6 +165,9 @@ class KindsOfBends(_Kinds):
 
 def nearest_kinds(values: Array, most: int) -> IntArray:
     """(n,) a kind for each of n points (n, d), no more than `most`, by Ward's method."""
+    # Here, not above: help and refusals should not wait for scipy.
+    from scipy.cluster.hierarchy import fcluster, linkage
+
     if len(values) == 1:
         return np.zeros(1, dtype=np.intp)
     joined = linkage(np.round(values - values.mean(axis=0), _DIGITS), method="ward")

@@ -75,7 +75,7 @@ def conjugate_planes(strip: Strip, surface: Surface, most: float) -> PlanesOf:
 
 
 def seam_planes(kind: Seams, strip: Strip, surface: Surface, most: float, what: str) -> PlanesOf:
-    """The planes of the kind that is asked for; see each of them. Seams that are free to turn are cut square."""
+    """The planes of the kind that is asked for; see each of them."""
     if kind == "level":
         return level_planes(strip, what)
     return conjugate_planes(strip, surface, most) if kind == "conjugate" else square_planes(strip)

@@ -205,7 +205,9 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.server": "tests/brep/test_read.py",
     "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
+    "cadpanel.cli.region_lines": "tests/cli/test_run.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
+    "cadpanel.cli.summary_table": "tests/cli/test_run.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.meshes.panels": "tests/delivery/meshes/test_glb.py",
@@ -238,6 +240,7 @@ THROUGH_A_DOOR = {
     "cadpanel.reference.alignment": "tests/reference/test_oriented_panel.py",
     "cadpanel.reference.inner_edges": "tests/reference/test_outline.py",
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",
+    "cadpanel.jobs.make": "tests/cli/test_fit.py",
     "cadpanel.terms.limits.chains": "tests/terms/test_limits.py",
 }
 

@@ -54,7 +54,8 @@ def commands() -> list[str]:
 @pytest.fixture
 def workplace(tmp_path: Path) -> Path:
     """A folder that looks like the repository's root to an example, so that nothing is written into the repository."""
-    (tmp_path / "fixtures").symlink_to(ROOT / "fixtures")
+    for folder in ("fixtures", "examples"):
+        (tmp_path / folder).symlink_to(ROOT / folder)
     return tmp_path
 
 
@@ -95,10 +96,15 @@ def test_the_readme_is_one_screen_with_a_picture_and_three_recipes() -> None:
 
 
 def test_the_rules_on_the_pages_are_rules() -> None:
-    asked: list[Any] = [tomllib.loads(block) for block in snippets("toml")]
+    asked: list[Any] = [tomllib.loads(block) for block in snippets("toml") if "[regions" not in block]
     told = [FitSettings(rules=rules).rules for rules in asked]
     assert told
     assert all(told)
+
+
+def test_the_job_on_the_pages_is_the_one_that_is_run() -> None:
+    (job,) = [block for block in snippets("toml") if "[regions" in block]
+    assert job in (ROOT / "examples" / "building.toml").read_text(encoding="utf-8")
 
 
 @thorough
@@ -142,6 +148,7 @@ def test_the_snippets_of_the_pages_run_one_after_the_other(workplace: Path) -> N
 def test_the_commands_of_the_pages_run_one_after_the_other(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In this process: that the program starts is held by tests of its own, and the kernel takes long to load."""
     monkeypatch.chdir(workplace)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(workplace / "cache"))
     for command in commands():
         words = shlex.split(command)
         if words[0] == "cadpanel":

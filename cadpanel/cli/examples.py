@@ -8,6 +8,8 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
         "cadpanel fit build/column.step --grid 4x2 --feature cone --joint 10 --out build/column",
         "cadpanel fit fixtures/kai_tak_nw.step --divide auto --max-deviation 25 --gap-tolerance 5 --out build/nw_few",
     ),
+    "init": ("cadpanel init fixtures/kai_tak_nw.step -o build/nw.toml",),
+    "run": ("cadpanel run examples/building.toml --out build/building",),
     "compare": ("cadpanel compare fixtures/kai_tak_nw.step --out build/nw_compared",),
     "study": ("cadpanel study fixtures/kai_tak_nw.step --gap 1,3,10 --divide 9,12 --out build/nw_study",),
     "verify": ("cadpanel verify build/kai_tak_nw --reference fixtures/kai_tak_nw.step",),

@@ -22,8 +22,10 @@ from cadpanel.cli.explain import explain
 from cadpanel.cli.features import features
 from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
+from cadpanel.cli.init import init
 from cadpanel.cli.inspect import inspect
 from cadpanel.cli.printable import complain, forgive_encodings
+from cadpanel.cli.run import run
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
 from cadpanel.cli.view import view
@@ -38,7 +40,19 @@ EXIT_UNFORESEEN = 3
 EXIT_INTERRUPTED = 130
 EXIT_TERMINATED = 143
 
-COMMANDS: tuple[Callable[..., None], ...] = (fit, compare, study, verify, diff, view, features, inspect, explain)
+COMMANDS: tuple[Callable[..., None], ...] = (
+    fit,
+    init,
+    run,
+    compare,
+    study,
+    verify,
+    diff,
+    view,
+    features,
+    inspect,
+    explain,
+)
 """One function a command, from a file of its own; its name is the command's, its docstring the help."""
 
 app = typer.Typer(name="cadpanel", pretty_exceptions_enable=False)

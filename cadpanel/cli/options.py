@@ -15,6 +15,7 @@ import typer
 from cadpanel.cli.groups import OUTPUT, RUN, group_of, rank
 from cadpanel.errors import SettingsError
 from cadpanel.features.catalogue import AUTO
+from cadpanel.fitting.settings import OF_GAPS
 from cadpanel.setting import Option, options_of
 
 ReferenceFile = Annotated[
@@ -255,7 +256,7 @@ def _listed(asked: _Asked, option: str) -> _Asked:
 
 def _refuse_contradictions(given: Mapping[str, Any]) -> None:
     """Refuse options that cannot stand together, by the names that they have here."""
-    for gap in ("gap_tolerance", "joint_tolerance", "step", "shift") if given.get("weights") is not None else ():
+    for gap in OF_GAPS if given.get("weights") is not None else ():
         if given.get(gap) is not None:
             raise SettingsError(f"--weights take the place of a tolerance: leave out either --weights or {flag(gap)}.")
     if given.get("feature") == AUTO and given["max_deviation"] is None:

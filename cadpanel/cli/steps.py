@@ -18,12 +18,13 @@ SILENCE = 4.0
 PACE = 2.0
 """Between two rounds of a fit that are told at least so many seconds pass, and before the first, s."""
 
-_DELIVERING = {
+DELIVERING = {
     "compare": "Fit two-stage, to compare",
     "build": "Build solids",
     "write": "Write STEP",
     "verify": "Read back and verify",
 }
+"""What the steps of a delivery are called."""
 
 
 class Steps:
@@ -46,7 +47,7 @@ class Steps:
 
     def count(self, step: str, done: int, of: int) -> None:
         """Say how much of a step is done; begins it where it has not begun."""
-        name = _DELIVERING.get(step, step)
+        name = DELIVERING.get(step, step)
         if name not in self._tasks:
             self.begin(name)
         self._progress.update(self._tasks[name], completed=done, total=of, detail=f"{done} of {of}" if of > 1 else "")
@@ -78,7 +79,7 @@ class ToldSteps(Steps):
     def count(self, step: str, done: int, of: int) -> None:
         """See `Steps.count`."""
         super().count(step, done, of)
-        self._tell(_DELIVERING.get(step, step), done, of, "")
+        self._tell(DELIVERING.get(step, step), done, of, "")
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """See `Steps.solving`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,8 +26,13 @@ from cadpanel.reference.model import Reference
 _ON_RULING = 1e-6
 
 
-def with_earlier(settings: FitSettings, reference: Reference) -> FitSettings:
+def with_earlier(settings: FitSettings, reference: Reference, folder_of: Callable[[str], Path] = Path) -> FitSettings:
     """The same settings where rules that lock panels know how these were made.
+
+    Args:
+        settings: how panels are fitted.
+        reference: what is fitted.
+        folder_of: where the delivery of a name lies.
 
     Raises:
         SettingsError: a delivery does not have a panel of a name, or a rule names none of the reference's.
@@ -35,11 +41,13 @@ def with_earlier(settings: FitSettings, reference: Reference) -> FitSettings:
     if settings.rules is None or not settings.rules.unread:
         return settings
     names = [panel.name for panel in reference.panels]
-    return replace(settings, rules=settings.rules.with_made(lambda rule: _made(rule, names, reference)))
+    return replace(
+        settings, rules=settings.rules.with_made(lambda rule: _made(rule, names, reference, folder_of(rule.delivery)))
+    )
 
 
-def _made(rule: LockRule, names: list[str], reference: Reference) -> LockRule:
-    report = read_report(Path(rule.delivery) / REPORT)
+def _made(rule: LockRule, names: list[str], reference: Reference, folder: Path) -> LockRule:
+    report = read_report(folder / REPORT)
     shift = np.array(report.origin.offset) - np.array(reference.origin)
     sheet = report.settings.sheet()
     depth = sheet_depth(sheet.thickness, sheet.skin_side)

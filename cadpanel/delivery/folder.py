@@ -39,7 +39,7 @@ def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
         DeliveryError: the target is refused, or cannot be written; one sentence says why.
     """
     place = Path(os.path.realpath(target))  # a link to a folder keeps pointing at it
-    _refuse_if_taken(place, target, overwrite=overwrite)
+    refuse_if_taken(place, target, overwrite=overwrite)
     made = _make_parents(place, target)
     clear_left_behind(place.parent)
     work = work_folder(place)
@@ -48,7 +48,7 @@ def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
         yield work
         write_manifest(work)
         make_lasting(work)
-        _refuse_if_taken(place, target, overwrite=overwrite)  # a fit takes minutes: someone may have come first
+        refuse_if_taken(place, target, overwrite=overwrite)  # a fit takes minutes: someone may have come first
         replaced = _put_in_place(work, place, target)
     except BaseException as error:  # an interrupt must clean up as well
         shutil.rmtree(work, ignore_errors=True)
@@ -62,7 +62,7 @@ def delivery_folder(target: Path, *, overwrite: bool = False) -> Iterator[Path]:
         _delete(replaced, target)
 
 
-def _refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
+def refuse_if_taken(place: Path, target: Path, *, overwrite: bool) -> None:
     """Refuse a target that holds something which was not asked to be replaced, or which is not ours to replace."""
     try:
         place.lstat()

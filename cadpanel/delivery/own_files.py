@@ -13,13 +13,15 @@ from cadpanel.errors import DeliveryError
 REPORT = "report.json"
 COMPARISON = "compare.json"
 STUDY, STUDY_TABLE = "study.json", "study.csv"
+JOB = "job.toml"
+"""The job that a delivery was made by, where one did."""
 STUDY_PLOTS = ("study.png", "study.svg")
 
 MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
 OWN_FILES = frozenset(
     {
-        *(REPORT, COMPARISON, STUDY, STUDY_TABLE, MANIFEST),
+        *(REPORT, COMPARISON, STUDY, STUDY_TABLE, MANIFEST, JOB),
         *STUDY_PLOTS,
         *(name for output in OUTPUTS for name in output.files),
     }

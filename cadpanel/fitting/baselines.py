@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cadpanel.arrays import Array
 from cadpanel.fitting.measures.fit import Measures, measure
@@ -32,6 +32,14 @@ class Baselines:
     problem: Problem
     alone: Array
     measured: dict[Method, Measures]
+
+    def told_of(self, reference: Reference) -> Baselines:
+        """See `HeldAgainst.told_of`."""
+        return replace(self, reference=reference)
+
+    def judged_by(self, settings: FitSettings, measures: Measures) -> Baselines:
+        """See `HeldAgainst.judged_by`."""
+        return replace(self, settings=settings, measured={settings.method: measures})
 
     @property
     def local(self) -> Measures:

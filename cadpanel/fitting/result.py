@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.measures.fit import Measures
 from cadpanel.fitting.measures.leans import leans
 from cadpanel.fitting.measures.verdict import keeps_limits, limits_of, too_oblique
@@ -54,6 +54,33 @@ def _broken(outcome: Outcome) -> str:
     )
 
 
+class HeldAgainst(Protocol):
+    """What a result is held against; `baselines.Baselines` is such a thing."""
+
+    @property
+    def reference(self) -> Reference:
+        """What is approximated."""
+        ...
+
+    def told_of(self, reference: Reference) -> HeldAgainst:
+        """The same of a reference with other notes."""
+        ...
+
+    def judged_by(self, settings: FitSettings, measures: Measures) -> HeldAgainst:
+        """The same for a result of these measures as the answer to other settings."""
+        ...
+
+    @property
+    def local(self) -> Measures:
+        """Of every panel alone."""
+        ...
+
+    @property
+    def two_stage(self) -> Measures:
+        """Of the same panels moved about with their shapes frozen."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class FitResult:
     """Fitted panels and what they are worth.
@@ -79,6 +106,7 @@ class FitResult:
             not everything is held.
         seam_prices: the same for one mm more of the gap, or of all its parts, at each seam alone; empty likewise.
         seconds: time of the fit, without the baselines.
+        parts: the results of components that no seam connects, each fitted by itself; none where there is only one.
     """
 
     reference: Reference
@@ -86,7 +114,7 @@ class FitResult:
     shapes: tuple[Panel, ...]
     measures: Measures
     unknowns: Array
-    baselines: Baselines
+    baselines: HeldAgainst
     tolerance_met: bool
     starts: int
     agreed: int
@@ -96,6 +124,7 @@ class FitResult:
     prices: Mapping[str, float]
     seam_prices: tuple[float, ...]
     seconds: float
+    parts: tuple[FitResult, ...] = ()
 
     @property
     def local(self) -> Measures:

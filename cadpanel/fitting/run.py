@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import time
+
+from cadpanel.arrays import IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.attempt import Attempts
 from cadpanel.fitting.automatic import fit_automatically
+from cadpanel.fitting.bends.taken import check_blends
+from cadpanel.fitting.components import components, fit_apart
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.seams_asked import for_seams
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
+
+# Of a time limit that is over, s: a fit ends with the first thing that it tells.
+_AT_ONCE = 1e-6
 
 
 def fit(
@@ -19,7 +27,7 @@ def fit(
     time_limit: float | None = None,
     after: FitResult | None = None,
 ) -> FitResult:
-    """Fit all panels of a reference.
+    """Fit all panels of a reference, those that seams connect together, and components by themselves.
 
     Args:
         reference: what is to be approximated.
@@ -40,11 +48,21 @@ def fit(
         raise SettingsError("a time limit ends the search for what holds tolerances; with weights there is none to end")
     if after is not None:
         _require_alike(reference, how, after)
-    attempts = Attempts(reference, how, progress, time_limit)
-    if how.automatic:
-        return fit_automatically(attempts)
     names, corners = zip(*((panel.name, len(panel.edges)) for panel in reference.panels), strict=True)
-    return attempts.fit(how.features_for(names, corners), after)
+    features = None if how.automatic else how.features_for(names, corners)
+    deadline = None if time_limit is None else time.perf_counter() + time_limit
+
+    def one(part: Reference, own: FitSettings, places: IntArray, before: FitResult | None) -> FitResult:
+        left = None if deadline is None else max(deadline - time.perf_counter(), _AT_ONCE)
+        attempts = Attempts(part, own, progress, left)
+        return fit_automatically(attempts) if features is None else attempts.fit([features[i] for i in places], before)
+
+    parts = components(reference, how)
+    if len(parts) == 1:
+        return one(reference, how, parts[0], after)
+    if features is not None:
+        check_blends(reference, features, how.blend)  # of all: a part knows nothing of another one's panels
+    return fit_apart(reference, how, parts, one, after)
 
 
 def _require_alike(reference: Reference, how: FitSettings, after: FitResult) -> None:

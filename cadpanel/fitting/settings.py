@@ -35,6 +35,9 @@ WIDTH, STEP, SHIFT = 3.0, 3.0, 3.0
 
 Method = Literal["local", "two_stage", "concurrent"]
 
+OF_GAPS = ("gap_tolerance", "joint_tolerance", "step", "shift")
+"""The settings that hold gaps, whose place weights take."""
+
 _WEIGHTS = ("gap", "deviation", "drift")
 
 

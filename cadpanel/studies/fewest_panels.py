@@ -139,7 +139,7 @@ def fewest_panels(
     found = Fewest(result=search.best, tried=tuple(search.tried.values()), least=least, most=most)
     reference = search.best.reference
     noted = replace(reference, notes=(*reference.notes, found.note()))
-    baselines = replace(search.best.baselines, reference=noted)
+    baselines = search.best.baselines.told_of(noted)
     return replace(found, result=replace(search.best, reference=noted, baselines=baselines))
 
 

@@ -86,10 +86,12 @@ def better(result: FitResult, other: FitResult) -> bool:
 
 def judged_by(result: FitResult, settings: FitSettings) -> FitResult:
     """The same panels as the answer to other tolerances; what a gap costs is not known of them."""
+    parts = tuple(judged_by(part, replace(settings, blend=part.settings.blend)) for part in result.parts)
     return replace(
         result,
         settings=settings,
-        baselines=replace(result.baselines, settings=settings, measured={settings.method: result.measures}),
+        baselines=result.baselines.judged_by(settings, result.measures),
+        parts=parts,
         tolerance_met=keeps_limits(result.measures, settings) and all(outcome.kept for outcome in result.outcomes),
         prices={},
     )

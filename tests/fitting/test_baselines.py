@@ -83,6 +83,7 @@ def test_a_result_that_is_a_baseline_itself_is_not_measured_again(counted, metho
 def test_two_stages_begin_from_the_local_fits():
     result = fit(STRIP)
     of = result.baselines
+    assert isinstance(of, baselines.Baselines)
     staged = TWO_STAGE.fit(of.problem, [of.alone], result.settings)
     assert np.array_equal(result.two_stage.seam_gap, measure(panel_shapes(of.problem, staged.unknowns), STRIP).seam_gap)
     assert np.array_equal(result.local.seam_gap, measure(panel_shapes(of.problem, of.alone), STRIP).seam_gap)

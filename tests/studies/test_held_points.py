@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cadpanel.errors import PanelError, SettingsError
+from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.studies import held_points
@@ -101,6 +102,7 @@ def test_an_answer_is_judged_anew_under_other_tolerances():
     assert wide.gap_price is None
     np.testing.assert_array_equal(wide.unknowns, tight.unknowns)
     assert not judged_by(tight, FitSettings(gap_tolerance=0.5)).tolerance_met
+    assert isinstance(wide.baselines, Baselines)
     assert wide.baselines.settings.gap_tolerance == 10.0
     assert wide.two_stage.overall_rms == pytest.approx(tight.two_stage.overall_rms)
 

@@ -5,6 +5,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from cadpanel.fitting.baselines import Baselines
 from cadpanel.fitting.methods.catalogue import LOCAL, METHODS, TWO_STAGE, method_for
 from cadpanel.fitting.methods.concurrent import Concurrent
 from cadpanel.fitting.methods.method import Fitted, Method
@@ -62,6 +63,7 @@ def test_a_method_of_ones_own_is_used_under_its_name(monkeypatch):
     result = fit(alone(folded_panel()), progress=lambda *args: rounds.append(args))
     assert len(told) >= 2
     assert all(start.shape == told[0].shape for start in told)
+    assert isinstance(result.baselines, Baselines)
     assert np.array_equal(told[0], result.baselines.alone)
     assert rounds == [("concurrent", 1, 0.5, 7.5)]
     assert (result.iterations, result.stopped) == (7, Stop.STALLED)

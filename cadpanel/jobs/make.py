@@ -1,0 +1,192 @@
+"""One reference to one delivery: read, fit, build, write and prove, told step by step."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from cadpanel.brep.files.text_check import require_files
+from cadpanel.brep.isolation.client import start_reader
+from cadpanel.delivery.chosen_panels import chosen_panels, names_along
+from cadpanel.delivery.records.report import ReportModel
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.errors import SettingsError
+from cadpanel.fitting.settings import FitSettings
+from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.reference.texts import AUTO
+
+if TYPE_CHECKING:
+    from cadpanel.fitting.result import FitResult
+    from cadpanel.reference.model import Reference
+
+_READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
+
+
+class Told(Protocol):
+    """Who is told how far it is; `cli.steps.Steps` is such a one."""
+
+    def begin(self, step: str, detail: str = "") -> None:
+        """A step begins, and those before it are done."""
+
+    def count(self, step: str, done: int, of: int) -> None:
+        """So much of a step is done."""
+
+    def solving(self, step: str, count: int, excess: float, rms: float) -> None:
+        """How far a fit is from its tolerances and the reference."""
+
+
+class Ending(Protocol):
+    """Somebody who may want a fit to end."""
+
+    def heard(self) -> bool:
+        """Whether it is to end with the best so far."""
+
+
+class _Nobody:
+    def heard(self) -> bool:
+        return False
+
+
+def _never() -> AbstractContextManager[Ending]:
+    return nullcontext(_Nobody())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """What is to be made of a reference.
+
+    Attributes:
+        file: the reference.
+        how, settings, sheet, shop: how it is read, fitted, built and delivered.
+        folder_of: where the earlier delivery of a name lies, for rules that lock panels to one.
+    """
+
+    file: Path
+    how: ReferenceSettings
+    settings: FitSettings
+    sheet: SheetSettings
+    shop: ShopSettings
+    folder_of: Callable[[str], Path] = Path
+
+
+def make_delivery(
+    asked: Asked,
+    folder: Path,
+    shown: Told,
+    *,
+    time_limit: float | None = None,
+    ending: Callable[[], AbstractContextManager[Ending]] = _never,
+) -> tuple[ReportModel, str | None]:
+    """Read, fit, build, write and verify into a folder that is there.
+
+    Args:
+        asked: what.
+        folder: as `delivery_folder` gives it.
+        shown: told of the steps.
+        time_limit: seconds after which the fit ends with the best so far.
+        ending: who may end the fit, asked as long as it runs.
+
+    Returns:
+        The report, and what the tolerance or the stock lacks, in sentences; None where they lack nothing.
+
+    Raises:
+        CadpanelError: the reference or a setting is refused, or the proof does not hold.
+    """
+    make = _fewest if asked.how.divide == AUTO else _once
+    if asked.how.divide == AUTO and asked.settings.max_deviation is None:
+        raise SettingsError(f"--divide {AUTO} is chosen by the largest deviation: give --max-deviation, too.")
+    shown.begin(_READ, asked.file.name)
+    # Refused before what reads is started: it takes seconds, and no refusal should wait for it.
+    require_files(asked.file, asked.how)
+    start_reader()
+    return make(asked, folder, shown, time_limit, ending)
+
+
+def _once(
+    asked: Asked,
+    folder: Path,
+    shown: Told,
+    time_limit: float | None,
+    ending: Callable[[], AbstractContextManager[Ending]],
+) -> tuple[ReportModel, str | None]:
+    from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
+    from cadpanel.fitting.run import fit
+
+    began = time.perf_counter()
+    reference = read_reference(asked.file, asked.how)
+    seconds_to_read = time.perf_counter() - began
+    chosen_panels([panel.name for panel in reference.panels], asked.shop.only)  # refused before the fit
+    settings = with_earlier(asked.settings, reference, asked.folder_of)
+    shown.begin(_FIRST)
+    with ending() as interrupted:
+
+        def tell(_method: str, count: int, excess: float, rms: float) -> bool:
+            shown.solving(_CONCURRENT, count, excess, rms)
+            return not interrupted.heard()
+
+        result = fit(reference, settings, tell, time_limit=time_limit)
+    return _delivered(asked, result, folder, shown, seconds_to_read, result.shortfall())
+
+
+def _fewest(
+    asked: Asked,
+    folder: Path,
+    shown: Told,
+    time_limit: float | None,
+    ending: Callable[[], AbstractContextManager[Ending]],
+) -> tuple[ReportModel, str | None]:
+    """The same with the fewest panels along each strip that hold everything."""
+    from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
+    from cadpanel.studies.fewest_panels import MOST, fewest_panels
+
+    seconds_to_read = 0.0
+
+    def read(count: int) -> Reference:
+        nonlocal seconds_to_read
+        began = time.perf_counter()
+        reference = read_reference(asked.file, replace(asked.how, divide=count))
+        if seconds_to_read == 0.0:  # what fits no panel of any number is refused before the first fit
+            chosen_panels(names_along((panel.name for panel in reference.panels), MOST), asked.shop.only)
+        seconds_to_read += time.perf_counter() - began
+        return reference
+
+    with ending() as interrupted:
+
+        def tell(count: int, step: int, excess: float, rms: float) -> bool:
+            name = f"Fit {count} along each strip"
+            if step == 0:
+                shown.begin(name)
+            else:
+                shown.solving(name, step, excess, rms)
+            return not interrupted.heard()
+
+        prepare = partial(with_earlier, folder_of=asked.folder_of)
+        found = fewest_panels(read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare)
+    return _delivered(asked, found.result, folder, shown, seconds_to_read, found.shortfall())
+
+
+def _delivered(
+    asked: Asked, result: FitResult, folder: Path, shown: Told, seconds_to_read: float, shortfall: str | None
+) -> tuple[ReportModel, str | None]:
+    from cadpanel.delivery.deliver import fill_delivery
+    from cadpanel.delivery.records.stock import stock_shortfall
+
+    report = fill_delivery(
+        result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
+    )
+    said = [sentence for sentence in (shortfall, stock_shortfall(report)) if sentence is not None]
+    return report, ". ".join(_sentence(words) for words in said) or None
+
+
+def _sentence(said: str) -> str:
+    """On one line, whatever the panels' names hold."""
+    words = " ".join(said.split())
+    return f"{words[0].upper()}{words[1:]}"

@@ -1,0 +1,59 @@
+"""A job as it was run, without variables, defaults and matrices: running it again gives the same."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from cadpanel.jobs.region import Region
+from cadpanel.jobs.schema import RULES, asked
+from cadpanel.jobs.task import Task, program
+
+_MARK = "# A job of cadpanel"
+
+
+def job_text(parts: Sequence[tuple[Region, Task]], folder: Path) -> str:
+    """What job.toml in a folder holds of some regions, files by where they lie from there.
+
+    Args:
+        parts: the regions, each with its task, which knows the sum of its reference.
+        folder: in which the text is to stand.
+    """
+    regions = {region.name: _plain(region, task, folder) for region, task in parts}
+    keys = ", ".join(task.key[:16] for _, task in parts)
+    head = (
+        f"{_MARK} {program()['version']}, as it was run; 'cadpanel run' of this file gives the same.\n"
+        "# Files are named by where they lie from here; a reference with another sha256 is refused.\n"
+        f"# Content: {keys}\n"
+    )
+    return f"{head}\n{tomli_w.dumps({'regions': regions})}"
+
+
+def is_a_job(path: Path) -> bool:
+    """Whether a file is one that was written here.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    with path.open("rb") as file:
+        return file.read(len(_MARK)) == _MARK.encode()
+
+
+def _plain(region: Region, task: Task, folder: Path) -> Mapping[str, Any]:
+    given = {
+        key: _from(folder, value) if key != RULES and asked()[key].is_file else value
+        for key, value in region.given.items()
+    }
+    return {"reference": _from(folder, region.reference), "sha256": task.contents[0].sha256, **given}
+
+
+def _from(folder: Path, path: str | Path) -> str:
+    """Where a file lies from a folder; the whole path where no way leads there, as from one drive to another."""
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:
+        return Path(path).as_posix()

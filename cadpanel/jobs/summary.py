@@ -1,0 +1,110 @@
+"""summary.json and summary.csv: what came of a job, a row a region."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Record, read_json, write_json
+from cadpanel.delivery.records.report import ReportModel
+from cadpanel.delivery.schedule.csv_text import Cell, csv_bytes
+from cadpanel.errors import DeliveryError
+
+SUMMARY, SUMMARY_TABLE = "summary.json", "summary.csv"
+SCHEMA = "cadpanel.summary/1"
+
+State = Literal["made", "kept", "there", "none", "waiting"]
+_MEASURED = ("rms_deviation", "max_deviation", "max_corner_gap", "max_seam_gap", "max_width", "max_step", "max_shift")
+
+
+class RowModel(Record):
+    """One region.
+
+    Attributes:
+        region: its name, and that of its folder.
+        state: "made" now; "kept" from an earlier run; "there" as it stood in the folder; "none" where there is no
+            delivery; "waiting" where the run ended before its turn.
+        panels: how many.
+        rms_deviation: root mean square over all samples, mm.
+        max_deviation: largest distance of the drawing from the panels, mm.
+        max_corner_gap, max_seam_gap, max_width, max_step, max_shift: the largest gaps and parts of them, mm.
+        met: whether everything that is asked of the region holds; None where nothing was made.
+        seconds: from reading to the proof, when it was made.
+        tries: how often it was tried now.
+        said: what is missed, or why there is no delivery.
+        details: where in the program a failure was that nobody foresaw.
+    """
+
+    region: str
+    state: State
+    panels: NonNegativeCount | None = None
+    rms_deviation: NonNegative | None = None
+    max_deviation: NonNegative | None = None
+    max_corner_gap: NonNegative | None = None
+    max_seam_gap: NonNegative | None = None
+    max_width: NonNegative | None = None
+    max_step: NonNegative | None = None
+    max_shift: NonNegative | None = None
+    met: bool | None = None
+    seconds: NonNegative | None = None
+    tries: NonNegativeCount = 0
+    said: str | None = None
+    details: str = ""
+
+
+class SummaryModel(Record):
+    """summary.json as a whole; rows in the order of the job, `code` as the run ended.
+
+    Attributes:
+        code: 0 all holds; 1 something asked for is missed; 2 a region was refused; 3 one failed as nobody foresaw.
+        rows: a region each.
+    """
+
+    schema_name: Literal["cadpanel.summary/1"] = Field(default="cadpanel.summary/1", alias="schema")
+    code: Annotated[int, Field(ge=0, le=3)]
+    rows: tuple[RowModel, ...]
+
+
+def row_of(region: str, report: ReportModel, state: State, said: str | None, tries: int) -> RowModel:
+    """The row of a region that is delivered."""
+    timing = report.timing
+    return RowModel(
+        region=region,
+        state=state,
+        panels=len(report.panels),
+        met=said is None,
+        seconds=timing.read + timing.fit + timing.build + timing.write + timing.verify,
+        tries=tries,
+        said=said,
+        **{name: getattr(report.summary, name) for name in _MEASURED},
+    )
+
+
+def read_summary(path: Path) -> SummaryModel:
+    """The summary in a file.
+
+    Raises:
+        DeliveryError: it cannot be read or is no summary; one sentence says where.
+    """
+    return read_json(path, SummaryModel, schema=SCHEMA, what="a summary of a cadpanel job")
+
+
+def write_summary(summary: SummaryModel, folder: Path) -> None:
+    """Write both files; `details` stand in summary.json alone.
+
+    Raises:
+        DeliveryError: one of them cannot be written.
+    """
+    write_json(summary, folder / SUMMARY)
+    heads = [name for name in RowModel.model_fields if name != "details"]
+    rows: list[list[Cell]] = [[_cell(getattr(row, name)) for name in heads] for row in summary.rows]
+    try:
+        (folder / SUMMARY_TABLE).write_bytes(csv_bytes([heads, *rows]))
+    except OSError as error:
+        raise DeliveryError(f"'{folder / SUMMARY_TABLE}' cannot be written: {error.strerror}.") from error
+
+
+def _cell(value: str | float | int | bool | None) -> Cell:
+    return ("yes" if value else "no") if isinstance(value, bool) else value

@@ -168,6 +168,7 @@ def compare(
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
     """
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.delivery.folder import delivery_folder
     from cadpanel.delivery.own_files import COMPARISON
     from cadpanel.delivery.records.comparison import write_comparison
@@ -175,7 +176,7 @@ def compare(
     from cadpanel.studies.table1 import compare as compare_reference
 
     _require(reference, Reference, "what is compared is a reference as read() gives it")
-    how = _asked(settings or LIKE_THE_PAPER, changes)
+    how = with_earlier(_asked(settings or LIKE_THE_PAPER, changes), reference)
     # Refused before the fits, which take their time.
     with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
         comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))

@@ -62,6 +62,7 @@ def study(
         DeliveryError: the folder is refused or cannot be written.
     """
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.delivery.folder import delivery_folder
     from cadpanel.delivery.records.study_rows import study_record
     from cadpanel.delivery.study_files import write_study_files
@@ -80,7 +81,7 @@ def study(
     asked = _asked(settings, changes)
     every = [replace(asked, feature=feature, gap_tolerance=gap) for feature in features for gap in dict.fromkeys(gaps)]
     with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
-        found = study_record(trade_off(reads, every, progress))
+        found = study_record(trade_off(reads, every, progress, prepare=with_earlier))
         if folder is not None:
             write_study_files(found, folder)
     return Study.of(found)
@@ -121,6 +122,7 @@ def fewest_panels(
         SettingsError: a setting is out of its range, or there is no largest deviation.
     """
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import fewest_panels as fewest
 
     how = _reading(reading)
@@ -128,7 +130,8 @@ def fewest_panels(
     def cut(count: int) -> Reference:
         return read_reference(path, replace(how, divide=count))
 
-    found = fewest(cut, _asked(settings, changes), most=most, progress=progress, time_limit=time_limit)
+    asked = _asked(settings, changes)
+    found = fewest(cut, asked, most=most, progress=progress, time_limit=time_limit, prepare=with_earlier)
     return replace(found, result=FitResult.of(found.result))
 
 

@@ -229,7 +229,6 @@ THROUGH_A_DOOR = {
     "cadpanel.fitting.rules.level": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.lock": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.mirror": "tests/fitting/rules/test_places.py",
-    "cadpanel.fitting.rules.rule": "tests/fitting/rules/test_book.py",
     "cadpanel.fitting.rules.seam": "tests/fitting/rules/test_places.py",
     "cadpanel.fitting.rules.shop": "tests/fitting/rules/test_radii.py",
     "cadpanel.fitting.settling": "tests/fitting/rules/test_radii.py",

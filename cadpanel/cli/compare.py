@@ -47,6 +47,7 @@ def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSetti
     require_files(file, how)
     start_reader()
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference
 
@@ -58,4 +59,5 @@ def _run(file: options.ReferenceFile, how: ReferenceSettings, settings: FitSetti
             shown.solving(step, count, excess, rms)
 
     panels = read_reference(file, how)
+    settings = with_earlier(settings, panels)
     return comparison_record(panels, settings, compare_reference(panels, settings, progress=tell))

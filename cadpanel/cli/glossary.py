@@ -138,6 +138,12 @@ GLOSSARY: tuple[Term, ...] = (
         also=("evenness",),
     ),
     Term(
+        name="seam level",
+        meaning="How far level seams lie off their planes, to either side, mm (--seam-level). Level are rings of seams "
+        "that are drawn in one plane, and all cuts with --seams level.",
+        also=("level", "level seams"),
+    ),
+    Term(
         name="side",
         meaning="Side 0 and side 1 are a panel's free edges along the fold; it is walked from side 0 to side 1. The "
         "bend's place is told from side 0 (--blend).",

@@ -29,7 +29,7 @@ def study(
     reference: options.ReferenceFile,
     settings: Annotated[
         tuple[FitSettings, ...],
-        options.Without(("weights", "method", "rules", "energy", "tau")),
+        options.Without(("weights", "method", "energy", "tau")),
         options.Each({"feature": "--feature", "gap_tolerance": "--gap"}),
     ],
     how: Annotated[tuple[ReferenceSettings, ...], options.Each({"divide": "--divide"})],
@@ -69,6 +69,7 @@ def _run(file: Path, how: tuple[ReferenceSettings, ...], settings: tuple[FitSett
     start_reader()
     # Here, not above: the CAD kernel takes seconds to load, and neither help nor a refusal should wait for it.
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.delivery.records.study_rows import study_record
     from cadpanel.studies.trade_off import trade_off
 
@@ -83,4 +84,4 @@ def _run(file: Path, how: tuple[ReferenceSettings, ...], settings: tuple[FitSett
         else:
             shown.solving(step, count, excess, rms)
 
-    return study_record(trade_off([partial(read, one) for one in how], settings, tell))
+    return study_record(trade_off([partial(read, one) for one in how], settings, tell, prepare=with_earlier))

@@ -35,6 +35,7 @@ _WORTH = {
     "step": ("1 mm more step", 1.0),
     "shift": ("1 mm more shift", 1.0),
     "seam_turn": ("1 degree more turn of seams", 1.0),
+    "seam_level": ("level seams 1 mm further off their planes", 1.0),
     "max_kink": ("1 degree more kink", 1.0),
     "evenness": ("0.1 % more unevenness", 0.1),
     "drift_along": ("1 % more drift along", 1.0),

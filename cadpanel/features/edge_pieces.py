@@ -33,6 +33,11 @@ def places(points: IntArray, corners: int) -> IntArray:
     return np.where(points < 0, corners - 1 - points, points)
 
 
+def boundary_points(edge: Edge) -> list[int]:
+    """The corners and arc points of an edge, as `EdgePieces.points` tells them."""
+    return [*edge.corners, *(-1 - arc for arc in edge.arcs)]
+
+
 def edge_pieces(edges: tuple[Edge, ...]) -> EdgePieces:
     """The pieces of edges."""
     found = []

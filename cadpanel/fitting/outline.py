@@ -7,15 +7,16 @@ from itertools import islice, pairwise
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.features.edge_pieces import edge_pieces
+from cadpanel.features.edge_pieces import boundary_points, edge_pieces
 from cadpanel.features.layout import Layout
 from cadpanel.features.panel_edges import ARC_SHARES, Edge
 from cadpanel.fitting.start.begin import Start
 from cadpanel.reference.edge_planes import edge_planes, turned_edges
 from cadpanel.reference.free_edges import free_edges
+from cadpanel.reference.level_seams import level_edges
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.reference.strip import strips_of
-from cadpanel.terms.outline import Limited, Line, Outline, Pieces
+from cadpanel.terms.outline import Level, Limited, Line, Outline, Pieces
 from cadpanel.terms.state import State
 
 
@@ -48,6 +49,7 @@ def outline_of(reference: Reference, layout: Layout, begin: Start) -> Outline:
         across=across.limited(),
         sided=sided,
         pieces=_pieces(reference, layout, begin),
+        level=_level(reference, layout, begin),
         line=_line(reference, layout, begin),
     )
 
@@ -106,6 +108,22 @@ def _pieces(reference: Reference, layout: Layout, begin: Start) -> Pieces:
         sizes[i, :count, 0] = lengths[i, pieces.edge[held]] / begin.length
     used = normals.any(axis=(0, 2))
     return Pieces(points=points[:, used], planes=normals[:, used], lengths=sizes[:, used, 0])
+
+
+def _level(reference: Reference, layout: Layout, begin: Start) -> Level:
+    """Corners and arc points of all edges on level seams."""
+    drawn = level_edges(reference)
+    edges = [layout.feature_of[i].edges[e] for i, e in zip(drawn.panels.tolist(), drawn.edges.tolist(), strict=True)]
+    rows = [boundary_points(edge) for edge in edges]
+    own = np.repeat(np.arange(len(rows)), [len(row) for row in rows])
+    panels = drawn.panels[own]
+    offsets = np.einsum("gx,gx->g", drawn.points[own] - begin.origins[panels], drawn.normals[own]) / begin.length
+    return Level(
+        panels=panels,
+        points=np.array([point for row in rows for point in row], dtype=np.intp),
+        normals=np.einsum("gx,gxa->ga", drawn.normals[own], begin.axes[panels]),
+        offsets=offsets,
+    )
 
 
 def _ways(reference: Reference, layout: Layout) -> dict[int, tuple[Array, Array]]:

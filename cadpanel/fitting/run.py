@@ -11,6 +11,7 @@ from cadpanel.fitting.automatic import fit_automatically
 from cadpanel.fitting.bends.taken import check_blends
 from cadpanel.fitting.components import components, fit_apart
 from cadpanel.fitting.result import FitResult, Progress
+from cadpanel.fitting.seams_asked import for_seams
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 
@@ -42,7 +43,7 @@ def fit(
         SettingsError: no starting values are known for the feature, a time limit is given beside weights, or there is
             no going on from the fit that is given.
     """
-    how = settings or FitSettings()
+    how = for_seams(settings or FitSettings(), reference.settings.seams)
     if time_limit is not None and how.weights is not None:
         raise SettingsError("a time limit ends the search for what holds tolerances; with weights there is none to end")
     if after is not None:

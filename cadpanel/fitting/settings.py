@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypedDict, get_args
 
@@ -23,6 +23,7 @@ from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import limit_setting
 from cadpanel.terms.limits.min_radius import MinRadius
 from cadpanel.terms.limits.outline_drift import DriftOutline
+from cadpanel.terms.limits.seam_level import SeamLevel
 from cadpanel.terms.limits.seam_turn import SeamTurn
 from cadpanel.terms.parts import PARTS
 
@@ -118,6 +119,8 @@ class FitSettings:
         seam_turn: degrees that ends, and edges on seams, may turn from the drawn ones.
         evenness: how far corners on seams may lie off the middle between those of the seams before and after, against
             the drawing, as a share of the panel's length.
+        seam_level: mm to either side that seams which are drawn level, in a ring that lies in one plane, may leave
+            that plane; 1000 for any.
         max_kink: degrees between neighbouring skins across a seam; 180 for any.
         drift_along: how far a corner may move along its free edge, as a share of the panel's length.
         drift_across: the same across its free edge, which is what people see.
@@ -171,6 +174,7 @@ class FitSettings:
     )
     seam_turn: float = limit_setting(SeamTurn)
     evenness: float = limit_setting(Evenness)
+    seam_level: float = limit_setting(SeamLevel)
     max_kink: float = limit_setting(Kink)
     drift_along: float = limit_setting(DriftAlong)
     drift_across: float = limit_setting(DriftAcross)
@@ -257,6 +261,8 @@ class FitSettings:
                 "all rules but [[feature]] are held while all panels are fitted at once within tolerances: leave out "
                 "the weights, or the method"
             )
+        for rule in self.rules.rules:
+            rule.check(self.allowed)
 
     @property
     def allowed(self) -> dict[str, float]:
@@ -286,6 +292,11 @@ class FitSettings:
     def widest_gap(self) -> float:
         """The most that is allowed of gaps, or of one of their parts, mm."""
         return max(self.gaps.values())
+
+    def alone(self, method: Method = "local") -> FitSettings:
+        """The same for a method that does not fit all panels at once, with those rules that it can follow."""
+        rules = None if self.rules is None else self.rules.of_panels_alone()
+        return replace(self, method=method, rules=rules)
 
     @property
     def automatic(self) -> bool:
@@ -317,7 +328,7 @@ def _require_weights(value: object) -> None:
         raise SettingsError(f"the weights must be Weights or None, not {value!r}")
 
 
-LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, drift_along=0.05)
+LIKE_THE_PAPER = FitSettings(gap_tolerance=1.0, seam_turn=90.0, evenness=0.5, seam_level=1000.0, drift_along=0.05)
 """What Table 1 is made under if nothing else is asked for: it is about how far gaps close, and its seams may lean."""
 
 
@@ -335,6 +346,7 @@ class FitKeywords(TypedDict, total=False):
     weights: Weights | None
     seam_turn: float
     evenness: float
+    seam_level: float
     max_kink: float
     drift_along: float
     drift_across: float

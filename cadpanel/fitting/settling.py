@@ -44,6 +44,7 @@ def settle(
         best = min(range(len(ends)), key=lambda i: (ends[i].stopped is not Stop.HELD, _deviation(problem, ends[i]), i))
         problem, fitted = grouped[best], ends[best]
     kept: Fitted | None = None
+    tried: list[Bends] = []
     for choice in range(max((rule.choices for rule in problem.rules), default=0)):
         bends = _bends(problem, fitted)
         for rule in problem.rules:
@@ -51,6 +52,9 @@ def settle(
         bends.held[bends.frozen] = False
         if not bends.held.any():
             return fitted
+        if any(bends.same(other) for other in tried):
+            continue  # what did not hold once does not hold the second time
+        tried.append(bends)
         trial = solved(problem.fixed(bends, fitted.unknowns), fitted)
         if trial.stopped is Stop.HELD:
             return trial

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -143,6 +144,7 @@ def _fewest(
 ) -> tuple[ReportModel, str | None]:
     """The same with the fewest panels along each strip that hold everything."""
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import MOST, fewest_panels
 
     seconds_to_read = 0.0
@@ -166,7 +168,8 @@ def _fewest(
                 shown.solving(name, step, excess, rms)
             return not interrupted.heard()
 
-        found = fewest_panels(read, asked.settings, progress=tell, time_limit=time_limit)
+        prepare = partial(with_earlier, folder_of=asked.folder_of)
+        found = fewest_panels(read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare)
     return _delivered(asked, found.result, folder, shown, seconds_to_read, found.shortfall())
 
 

@@ -16,7 +16,7 @@ from cadpanel.reference.texts import AUTO, Auto, choices_of, parse_divide, parse
 from cadpanel.setting import Option, Range, check_ranges, setting
 
 By = Literal["length", "parameter"]
-Seams = Literal["square", "level", "conjugate"]
+Seams = Literal["square", "level", "conjugate", "free"]
 
 MILLIMETRES = {"um": 1e-3, "mm": 1.0, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "yd": 914.4}
 """What the units that may be given for a file without one have in mm."""
@@ -39,7 +39,9 @@ class ReferenceSettings:
         divide: cut each strip into so many panels of equal length; "auto" for as few as hold what is asked of a fit.
         panel_length: cut each strip into as few equal panels as are no longer than this along either long edge, mm.
         seams: with one of these two, "square" cuts the strip square to it; "level" at equal heights, in level planes;
-            "conjugate" where panels can meet, as the surface bends, as near to square as `cut_turn` says.
+            "conjugate" where panels can meet, as the surface bends, as near to square as `cut_turn` says. A fit holds
+            seams where they were cut, within its limits on seams, and level ones in their planes; with "free", of any
+            seams, it holds neither their turn nor how even and level they are, and strips are cut square.
         cut_turn: by how much a plane of conjugate seams may be turned from square, degrees.
         lip: with `divide` or `panel_length`, keep only a band of this width about the strip's lip, measured along the
             surface, mm.
@@ -86,7 +88,8 @@ class ReferenceSettings:
     seams: Seams = setting(
         "square",
         option=Option(
-            help="Cut strips square to them, in level planes, or where panels can meet as the surface bends?"
+            help="Cut strips square to them, in level planes, or where panels can meet as the surface bends, and keep "
+            "seams there; or let them turn freely?"
         ),
     )
     cut_turn: float = setting(
@@ -196,7 +199,7 @@ class ReferenceSettings:
             raise SettingsError(
                 f"seams are {', '.join(get_args(Seams)[:-1])} or {get_args(Seams)[-1]}, not {self.seams!r}"
             )
-        if self.seams != "square" and not lengthwise:
+        if self.seams not in ("square", "free") and not lengthwise:
             raise SettingsError(
                 f"{self.seams} seams part a strip that is divided along its length: give the number of panels, too, or "
                 "their length"

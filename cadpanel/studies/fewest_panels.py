@@ -22,6 +22,7 @@ from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
+from cadpanel.studies.prepared import Prepare, unprepared
 
 MOST = 200
 """Panels along a strip at most, where nothing else is said."""
@@ -108,6 +109,7 @@ def fewest_panels(
     most: int = MOST,
     progress: Progress | None = None,
     time_limit: float | None = None,
+    prepare: Prepare = unprepared,
 ) -> Fewest:
     """Find the fewest panels along each strip that hold everything that is asked.
 
@@ -117,6 +119,7 @@ def fewest_panels(
         most: panels along a strip.
         progress: told of every step.
         time_limit: seconds after which the search ends with the best so far.
+        prepare: see `Prepare`.
 
     Raises:
         ReferenceFileError: the reference cannot be cut along strips at all.
@@ -127,7 +130,7 @@ def fewest_panels(
         raise SettingsError("the number of panels is chosen by a largest deviation: give one, too")
     if settings.weights is not None:
         raise SettingsError("the number of panels is chosen by what is held, and weights hold nothing: leave them out")
-    search = _Search(read, settings, most, progress, time_limit)
+    search = _Search(read, settings, most, progress, time_limit, prepare)
     least = search.least_alone()
     search.run(least)
     if search.best is None:
@@ -157,7 +160,9 @@ class _Search:
         most: int,
         progress: Progress | None,
         time_limit: float | None,
+        prepare: Prepare,
     ) -> None:
+        self._prepare = prepare
         self.tried: dict[int, Tried] = {}
         self.best: FitResult | None = None
         self.most = most
@@ -215,8 +220,8 @@ class _Search:
         if reference is None:
             return np.inf
         try:
-            alone = fit(reference, replace(self._settings, method="local"))
-        except PanelError as error:
+            alone = fit(reference, self._settings.alone())
+        except (PanelError, SettingsError) as error:
             self.refused = error
             return np.inf
         return float(alone.measures.max_deviation.max())
@@ -252,8 +257,8 @@ class _Search:
         tell("", 0, 0.0, 0.0)
         left = None if self._until is None else max(self._until - time.perf_counter(), 1e-3)
         try:
-            return fit(reference, self._settings, tell, time_limit=left)
-        except PanelError as error:
+            return fit(reference, self._prepare(self._settings, reference), tell, time_limit=left)
+        except (PanelError, SettingsError) as error:  # a rule may name panels that only other numbers have
             self.refused = error
             return None
 

@@ -14,6 +14,7 @@ from cadpanel.errors import PanelError
 from cadpanel.fitting.measures.verdict import keeps_limits
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import fit
+from cadpanel.fitting.seams_asked import for_seams
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 
@@ -57,7 +58,7 @@ def fit_points(
         settings: in any order.
         progress: told of every step.
     """
-    ordered = sorted(settings, key=lambda one: one.widest_gap)
+    ordered = sorted((for_seams(one, reference.settings.seams) for one in settings), key=lambda one: one.widest_gap)
     points: list[Point] = []
     for how in ordered:
         point = _alone(reference, how, progress)
@@ -91,7 +92,7 @@ def judged_by(result: FitResult, settings: FitSettings) -> FitResult:
         settings=settings,
         baselines=result.baselines.judged_by(settings, result.measures),
         parts=parts,
-        tolerance_met=keeps_limits(result.measures, settings),
+        tolerance_met=keeps_limits(result.measures, settings) and all(outcome.kept for outcome in result.outcomes),
         prices={},
     )
 

@@ -24,8 +24,9 @@ def compare(
 
     Args:
         reference: what is to be approximated.
-        settings: tolerance, limits, tilt and restarts, by default `LIKE_THE_PAPER`; its feature and method are not
-            used.
+        settings: tolerance, limits, rules, tilt and restarts, by default `LIKE_THE_PAPER`; its feature and method are
+            not used. Two stages hold no rules but those that give panels features; what comes of the others is
+            measured all the same.
         progress: told when a column begins (step 0), and of every step of a concurrent fit.
 
     Raises:
@@ -43,4 +44,18 @@ def _column(
             progress(feature, method, step, excess, rms)
 
     tell(method, 0, 0.0, 0.0)
-    return fit(reference, replace(settings, feature=feature, method=method, max_deviation=None), tell)
+    how = replace(settings, feature=feature, max_deviation=None)
+    if method == "concurrent":
+        return fit(reference, how, tell)
+    return _measured(fit(reference, how.alone(method), tell), how)
+
+
+def _measured(result: FitResult, settings: FitSettings) -> FitResult:
+    """A result whose method holds no rules, with what came of them."""
+    if settings.rules is None:
+        return result
+    names, corners = zip(*((panel.name, len(panel.edges)) for panel in result.reference.panels), strict=True)
+    posed = settings.rules.pose(result.reference, settings.features_for(names, corners))
+    outcomes = tuple(rule.outcome(result.measures) for rule in posed)
+    met = result.tolerance_met and all(outcome.kept for outcome in outcomes)
+    return replace(result, outcomes=outcomes, tolerance_met=met)

@@ -10,10 +10,15 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 from cadpanel.studies.held_points import Point, Progress, fit_points
 from cadpanel.studies.knee import knee
+from cadpanel.studies.prepared import Prepare, unprepared
 
 
 def trade_off(
-    references: Iterable[Callable[[], Reference]], settings: Sequence[FitSettings], progress: Progress | None = None
+    references: Iterable[Callable[[], Reference]],
+    settings: Sequence[FitSettings],
+    progress: Progress | None = None,
+    *,
+    prepare: Prepare = unprepared,
 ) -> tuple[Point, ...]:
     """Fit every reference under all settings: for each reference and feature the points from tight gaps to wide ones.
 
@@ -21,6 +26,7 @@ def trade_off(
         references: each is read when its turn comes.
         settings: those that differ in nothing but the gap tolerance make a curve, in the order of their first ones.
         progress: told of every step.
+        prepare: see `Prepare`.
 
     Raises:
         CadpanelError: a reference cannot be read.
@@ -34,7 +40,7 @@ def trade_off(
     for read in references:
         reference = read()
         for group in _curves(settings):
-            points = fit_points(reference, group, progress)
+            points = fit_points(reference, [prepare(one, reference) for one in group], progress)
             best = _knee(points)
             found += [replace(point, knee=place == best) for place, point in enumerate(points)]
     return tuple(found)

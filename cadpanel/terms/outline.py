@@ -49,6 +49,43 @@ class Pieces:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Level:
+    """Points of edges on seams that are drawn level, and their planes.
+
+    Attributes:
+        panels: (g,) whose.
+        points: (g,) 0 and more for a panel's corners, -1 and less for its arc points, see `features.edge_pieces`.
+        normals: (g, 3) unit normals of the planes in the panels' own frames.
+        offsets: (g,) how far along them the planes lie from the frames' origins, in the solver's length.
+    """
+
+    panels: IntArray
+    points: IntArray
+    normals: Array
+    offsets: Array
+
+    def take(self, panels: IntArray) -> Level:
+        """Those of some panels (n,), which are counted anew."""
+        row = np.full(1 + max(int(panels.max(initial=-1)), int(self.panels.max(initial=-1))), -1)
+        row[panels] = np.arange(len(panels))
+        place = np.flatnonzero(row[self.panels] >= 0)
+        return Level(
+            panels=row[self.panels[place]],
+            points=self.points[place],
+            normals=self.normals[place],
+            offsets=self.offsets[place],
+        )
+
+
+NOT_LEVEL = Level(
+    panels=np.zeros(0, dtype=np.intp),
+    points=np.zeros(0, dtype=np.intp),
+    normals=np.zeros((0, 3)),
+    offsets=np.zeros(0),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
     """f edges on no seam: points of them, and where they are drawn.
 
@@ -93,6 +130,7 @@ class Outline:
             from its sides has only these, and they are its whole drift.
         sided: (panels,) whether ends can be told from sides.
         pieces: of the edges whose turn is limited.
+        level: points on level seams.
         line: the free outline; of some panels taken by themselves it is not known.
     """
 
@@ -101,6 +139,7 @@ class Outline:
     across: Limited
     sided: BoolArray
     pieces: Pieces
+    level: Level = NOT_LEVEL
     line: Line = NO_LINE
 
     def take(self, panels: IntArray) -> Outline:
@@ -113,6 +152,7 @@ class Outline:
             across=across,
             sided=self.sided[panels],
             pieces=self.pieces.take(panels),
+            level=self.level.take(panels),
         )
 
     def drift(self, state: State) -> Array:

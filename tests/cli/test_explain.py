@@ -52,5 +52,5 @@ def test_the_measures_of_the_closing_table_are_explained():
     ):
         assert meant(word).meaning
     for limit in LIMITS:
-        if limit.name in ("seam_turn", "evenness", "max_kink", "drift_along", "drift_across"):
+        if limit.name in ("seam_turn", "evenness", "seam_level", "max_kink", "drift_along", "drift_across"):
             assert meant(limit.name.removeprefix("max_")).meaning

@@ -6,7 +6,9 @@ from functools import cache
 import pytest
 
 from cadpanel.errors import SettingsError
+from cadpanel.fitting.rules.book import rules_of
 from cadpanel.fitting.settings import FitSettings, Weights
+from cadpanel.studies.prepared import unprepared
 from cadpanel.studies.trade_off import trade_off
 from tests.delivered import strip
 from tests.thorough import thorough
@@ -46,3 +48,17 @@ def test_no_settings_and_weights_make_no_study():
 
 def test_two_gaps_make_no_knee():
     assert not any(point.knee for point in study())
+
+
+def test_every_point_holds_the_rules_and_rules_learn_of_the_reference():
+    rules = rules_of({"seam": [{"between": ["N 1", "N 2"], "step": 0.3}]})
+    prepared = []
+
+    def prepare(how, reference):
+        prepared.append(reference.source)
+        return replace(unprepared(how, reference), rules=rules)
+
+    points = trade_off([strip], [FitSettings(gap_tolerance=gap) for gap in GAPS], prepare=prepare)
+    assert prepared == [strip().source] * 2
+    results = [point.result for point in points if point.result is not None]
+    assert [result.tolerance_met and result.outcomes[0].kept for result in results] == [True, True]

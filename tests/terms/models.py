@@ -27,12 +27,12 @@ from cadpanel.terms.edge_gap import MixedGap
 from cadpanel.terms.limits.corner_drift import DriftTerm
 from cadpanel.terms.limits.evenness import EvennessTerm
 from cadpanel.terms.limits.kink import KinkTerm
+from cadpanel.terms.limits.planes import PlaneTerm
 from cadpanel.terms.limits.seam_turn import TurnTerm
 from cadpanel.terms.outline import Limited, Pieces
 from cadpanel.terms.parted_gap import PartedGap
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.rules.alike import AlikeTerm
-from cadpanel.terms.rules.heights import HeightTerm
 from cadpanel.terms.rules.mirrored import MirrorTerm
 from cadpanel.terms.rules.near import NearTerm
 from cadpanel.terms.seams import batches
@@ -48,7 +48,7 @@ ROUNDING = 1e-11
 
 
 HELD = (CornerGap, ArcGap, MixedGap, PartedGap, DriftTerm, TurnTerm, EvennessTerm, KinkTerm)
-RULES = (AlikeTerm, HeightTerm, MirrorTerm, NearTerm)
+RULES = (AlikeTerm, PlaneTerm, MirrorTerm, NearTerm)
 
 
 class Together:

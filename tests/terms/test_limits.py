@@ -46,6 +46,7 @@ class Measured:
     outline_drift: Array
     turn: Array
     uneven: Array
+    off_level: Array
     kink: Array
     seam_panels: Any
 
@@ -71,6 +72,7 @@ def test_radii_and_widths_are_measured_where_they_are_held(name: str) -> None:
         outline_drift=zero,
         turn=zero,
         uneven=zero,
+        off_level=zero,
         kink=zero,
         seam_panels=zero,
     )
@@ -109,16 +111,23 @@ def test_the_names_of_a_limit_are_its_own_and_its_default_is_in_its_range(limit:
     assert "{" not in limit.rows[-1].form.format(1.0)
 
 
+@cache
+def measured_result() -> FitResult:
+    """A strip of which every limit measures something; nothing of it is level, so that is made up."""
+    result = fitted()
+    return replace(result, measures=replace(result.measures, off_level=np.array([np.nan, 0.4, 0.3])))
+
+
 def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
     """What would have to be allowed for the strip to miss a limit by a share, or to keep it by one below 0."""
-    found = limit.measure(fitted().measures)
+    found = limit.measure(measured_result().measures)
     worst = float(found.min() if limit.at_least else found.max())
     return {limit.name: worst * (1.0 + by if limit.at_least else 1.0 - by)}, worst
 
 
 @pytest.mark.parametrize("limit", ASKED, ids=lambda limit: limit.name)
 def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(limit: Limit) -> None:
-    result = fitted()
+    result = measured_result()
     for by, kept in ((-1e-6, True), (1e-3, False)):
         allowed, worst = broken(limit, by)
         how = replace(result.settings, **cast("dict[str, Any]", allowed))
@@ -160,9 +169,10 @@ def test_the_advice_without_a_limit_that_is_missed_is_a_larger_gap_or_more_drift
 
 @every_limit
 def test_the_worst_is_stated_in_the_units_that_people_read(limit: Limit) -> None:
-    found = limit.measure(fitted().measures)
+    measures = measured_result().measures
+    found = limit.measure(measures)
     worst = found.min() if limit.at_least else found.max()
-    assert limit.worst(fitted().measures) == pytest.approx(100.0 * worst if limit.percent else worst, rel=1e-15)
+    assert limit.worst(measures) == pytest.approx(100.0 * worst if limit.percent else worst, rel=1e-15)
 
 
 def test_drift_is_held_as_shares_of_lengths_less_a_margin() -> None:

@@ -163,7 +163,7 @@ def division_of(surface: Surface, seams: Seams, most_turn: float, source: str, t
 
     Args:
         surface: what to cut.
-        seams: which planes.
+        seams: which planes; free ones are cut square.
         most_turn: by how much a plane of conjugate seams may be turned from square, radians.
         source: the reference's name.
         tolerance: how far faces that meet may lie apart, mm.
@@ -172,6 +172,8 @@ def division_of(surface: Surface, seams: Seams, most_turn: float, source: str, t
         ReferenceFileError: the surface is no strip, or none that has such seams.
     """
     what = f"the surface of {surface.numbers} of '{source}'"
+    # Free seams are told from square ones in the fit alone.
+    seams = "square" if seams == "free" else seams
     lanes = find_lanes(surface)
     if lanes is None or not lanes.outer:
         ring = find_ring(surface)

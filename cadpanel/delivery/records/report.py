@@ -260,6 +260,7 @@ class SummaryModel(Record):
         max_width, max_step, max_shift: the largest of their parts.
         max_kink: largest angle between two neighbouring skins' normals.
         max_unevenness: how far a corner on a seam lies off the middle between those before and after it.
+        max_off_level: largest distance of a level seam from its drawn plane; None where no seam is drawn level.
         rms_deviation: root mean square over all samples.
         max_deviation: largest distance of the reference, its outline included, to the patches.
         hausdorff: two-sided distance between the trimmed skin and the reference.
@@ -281,6 +282,7 @@ class SummaryModel(Record):
     max_shift: NonNegative = 0.0
     max_kink: NonNegative
     max_unevenness: NonNegative = 0.0
+    max_off_level: NonNegative | None = None
     rms_deviation: NonNegative
     max_deviation: NonNegative
     hausdorff: NonNegative

@@ -18,7 +18,7 @@ from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 
-OF_A_COLUMN = ("feature", "max_deviation", "method", "rules", "energy", "tau")
+OF_A_COLUMN = ("feature", "max_deviation", "method", "energy", "tau")
 """The settings of a fit that a comparison chooses itself, for each column its own, or does without."""
 # Where a record calls a setting by another name.
 _KEYS = {"schema": "step_schema"}
@@ -47,8 +47,10 @@ class ComparisonSettingsModel(Record):
         drift_along: how far a corner might move along its free edge, a share of the panel's length.
         drift_across: the same across its free edge.
         drift_outline: how far the free outline might leave the drawn one; 0.5 for any.
+        seam_level: how far level seams might leave their planes to either side, mm; 1000 for any.
         min_radius: tightest radius that was allowed anywhere, mm.
         blend: which stretches were to become curved patches, where the user said so.
+        rules: for single panels and seams, as a file of rules has them; None without any.
         restarts: further starts.
         seed: of the random numbers.
         seam_tolerance: how far the ends of two panels that meet might lie apart in the reference, mm.
@@ -65,8 +67,10 @@ class ComparisonSettingsModel(Record):
     drift_along: NonNegative
     drift_across: NonNegative
     drift_outline: NonNegative = 0.5
+    seam_level: NonNegative = 1000.0
     min_radius: NonNegative = 0.0
     blend: tuple[str, ...] = ()
+    rules: dict[str, Any] | None = None
     restarts: NonNegativeCount
     seed: int
     seam_tolerance: NonNegative
@@ -81,7 +85,6 @@ class SettingsModel(ComparisonSettingsModel):
         max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         method: name of the method.
         energy, tau: of the method annealing, mm2 and mm.
-        rules: for single panels and seams, as a file of rules has them; None without any.
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
             nothing is said of sheets that overlap, either.
@@ -111,7 +114,6 @@ class SettingsModel(ComparisonSettingsModel):
     method: Method
     energy: NonNegative | None = None
     tau: Annotated[float, Field(gt=0.0)] = 1e-3
-    rules: dict[str, Any] | None = None
     thickness: NonNegative
     joint: NonNegative | None = None
     ends: Literal["bevel", "square"] = "bevel"

@@ -27,7 +27,7 @@ from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.free_outline import outline_drift
 from cadpanel.fitting.measures.seams import along_seams, corner_gaps
-from cadpanel.fitting.measures.turns import edge_turns, seam_unevenness
+from cadpanel.fitting.measures.turns import edge_turns, off_level, seam_unevenness
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
@@ -48,6 +48,8 @@ class Measures:
         edge_turns: (panels, most edges) how far each end, and each edge on a seam, turns from the drawn one, radians.
         uneven: (seams,) how far the corners on a seam lie off the middle between those before and after it, against
             the drawing, mm.
+        off_level: (panels,) of the place on a level seam that is farthest from its drawn plane, mm; nan where a panel
+            has no such seam.
         seam_panels: (seams, 2) which panels meet there.
         drift: (panels,) of the outer corner that drifted most, mm.
         drift_along: (panels,) of the corner, inner ones included, that drifted most along the strip, mm; of a panel
@@ -70,6 +72,7 @@ class Measures:
     hausdorff: Array
     edge_turns: Array
     uneven: Array
+    off_level: Array
     seam_panels: IntArray
     drift: Array
     drift_along: Array
@@ -132,6 +135,7 @@ def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
         hausdorff=np.maximum(largest, overhang(edges, reference)),
         edge_turns=edge_turns(edges, reference),
         uneven=seam_unevenness(edges, reference),
+        off_level=off_level(edges, reference),
         seam_panels=np.array([seam.panels for seam in reference.seams], dtype=np.intp).reshape(-1, 2),
         drift=drifted.whole,
         drift_along=drifted.along,

@@ -1,15 +1,16 @@
-"""How far fitted panels' edges turn from the drawing's, and how evenly they follow one another."""
+"""How far fitted panels' edges turn from the drawing's, how level they are, and how evenly they follow one another."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.features.edge_pieces import edge_pieces, places, turns
+from cadpanel.features.edge_pieces import boundary_points, edge_pieces, places, turns
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.fitting.measures.edges import Alike, PanelEdges
 from cadpanel.reference.across_seams import across_seams, unevenness
 from cadpanel.reference.edge_planes import edge_planes, turned_edges
+from cadpanel.reference.level_seams import level_edges
 from cadpanel.reference.model import Reference
 
 
@@ -21,9 +22,8 @@ def edge_turns(edges: PanelEdges, reference: Reference) -> Array:
     planes, lengths = edge_planes(reference.panels)
     found = np.zeros(lengths.shape)
     for group in edges.groups:
-        own, count = group.members, group.corners.shape[1] * group.corners.shape[2]
-        pieces = edge_pieces(group.edges)
-        points = np.concatenate([group.corners.reshape(len(own), count, 3) - edges.centre, _arcs(group, edges)], axis=1)
+        own, count = group.members, _corners(group)
+        pieces, points = edge_pieces(group.edges), _boundary(group, edges)
         sines = turns(
             points[:, places(pieces.points, count)], planes[own][:, pieces.edge], lengths[own][:, pieces.edge]
         )
@@ -31,6 +31,35 @@ def edge_turns(edges: PanelEdges, reference: Reference) -> Array:
             largest = np.abs(sines[:, pieces.edge == edge]).max(axis=1)
             found[own, edge] = np.arcsin(np.minimum(largest, 1.0))
     return np.where(turned_edges(reference), found, 0.0)
+
+
+def off_level(edges: PanelEdges, reference: Reference) -> Array:
+    """(panels,) the largest distance of a place on a level seam from its drawn plane, mm; nan where there is none.
+
+    As it is held: at corners, and at points on arcs.
+    """
+    level = level_edges(reference)
+    found = np.full(len(reference.panels), np.nan)
+    for group in edges.groups:
+        boundary, row = _boundary(group, edges), np.full(len(found), -1)
+        row[group.members] = np.arange(len(group.members))
+        for place, edge in enumerate(group.edges):
+            own = np.flatnonzero((row[level.panels] >= 0) & (level.edges == place))
+            rows = row[level.panels[own]]
+            points = boundary[rows[:, None], places(np.array(boundary_points(edge)), _corners(group))]
+            off = np.einsum("rqx,rx->rq", points + edges.centre - level.points[own][:, None], level.normals[own])
+            found[group.members[rows]] = np.fmax(found[group.members[rows]], np.abs(off).max(axis=1, initial=0.0))
+    return found
+
+
+def _corners(group: Alike) -> int:
+    return int(group.corners.shape[1] * group.corners.shape[2])
+
+
+def _boundary(group: Alike, edges: PanelEdges) -> Array:
+    """(m, corners + arcs, 3) corners, then points inside the arcs of both ends, from the middle of all."""
+    corners = group.corners.reshape(len(group.members), _corners(group), 3) - edges.centre
+    return np.concatenate([corners, _arcs(group, edges)], axis=1)
 
 
 def _arcs(group: Alike, edges: PanelEdges) -> Array:

@@ -46,7 +46,12 @@ _TIGHTENINGS = 8
 _NEARLY = 20.0
 # What must be kept exceeds its limit beyond rounding.
 _FIRM = 1.0 + 1e-5
-_YIELDING = frozenset(limit.name for limit in LIMITS if limit.yields)
+# What gives way last does so only where that lets the excess, or the deviation, fall to this share.
+_HELPS = 0.5
+# Limits that give way with gaps where what panels must keep to cannot be kept beside them, the first ones first.
+_YIELDING = tuple(
+    frozenset(limit.name for limit in LIMITS if limit.yields and limit.yields_last is last) for last in (False, True)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +105,24 @@ def _hold_seams(
     def held(unknowns: Array, where: BoolArray) -> HeldSolution:
         return held_within(problem, model, unknowns, local=starts[0], only=where, elsewhere=elsewhere, tell=progress)
 
-    found = held(begin, everywhere)
-    yielding = [term for name, term in limits if name in _YIELDING]
-    lost = np.array([stop is not Stop.TOLD for stop in found.stopped]) & (found.end.best.firm > _FIRM) & bool(yielding)
-    found = _tightened(problem, model, found, ~lost, starts[0], settings, progress)
-    if lost.any() and Stop.TOLD not in found.stopped:
+    found, open_ = held(begin, everywhere), everywhere
+    blocks = Components.of(model.pattern)
+    for names in _YIELDING:
+        yielding = [term for name, term in limits if name in names]
+        told = np.array([stop is Stop.TOLD for stop in found.stopped])
+        lost = open_ & ~told & (found.end.best.firm > _FIRM) & bool(yielding)
+        found = _tightened(problem, model, found, open_ & ~lost, starts[0], settings, progress)
+        open_ = lost
+        if not lost.any() or Stop.TOLD in found.stopped:
+            break
         # What panels must keep to cannot be kept beside these, as with rulings that are all parallel between edges that
         # are not: they give way with the gaps.
         for term in yielding:
             term.hold.gives_way = True
-        blocks = Components.of(model.pattern)
-        found = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
-        found = _tightened(problem, model, found, lost, starts[0], settings, progress)
+        again = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
+        found = again if names is _YIELDING[0] else found.mixed(again, _worth_it(found, again), blocks)
+    else:
+        found = _tightened(problem, model, found, open_, starts[0], settings, progress)
     if any(isinstance(term, KinkTerm) for term in model.held) and Stop.TOLD not in found.stopped:
         missed = np.array([stop not in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         if missed.any():
@@ -122,6 +133,12 @@ def _hold_seams(
     costs, of_seams = prices(problem, named, found, settings.gaps | settings.allowed)
     steps = iterations + found.iterations
     return Fitted(found.unknowns, steps, stopped_as(found), prices=costs, seam_prices=tuple(of_seams.tolist()))
+
+
+def _worth_it(found: HeldSolution, again: HeldSolution) -> BoolArray:
+    """(components,) where what gave way last helped what must hold, or the deviation by far: else it stays held."""
+    one, other = found.end.best, again.end.best
+    return np.asarray((other.firm <= np.maximum(_FIRM, _HELPS * one.firm)) | (other.cost <= _HELPS**2 * one.cost))
 
 
 def _tightened(

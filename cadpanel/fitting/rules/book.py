@@ -14,10 +14,14 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.catalogue import RULES
+from cadpanel.fitting.rules.contradictions import refuse_contradictions
 from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.rules.rule import Posed, Rule
 from cadpanel.reference.model import Reference
 from cadpanel.reference.named import near_names
+
+# A gap is no longer than so many times the root of the sum of its parts' squares.
+_MORE = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +34,10 @@ class Rules:
     def of_fit(self) -> bool:
         """Whether some of them need a fit of all panels at once that holds tolerances."""
         return any(rule.of_fit for rule in self.rules)
+
+    def of_panels_alone(self) -> Rules:
+        """Those that count where panels are not fitted at once, too: their features."""
+        return Rules(tuple(rule for rule in self.rules if not rule.of_fit))
 
     def features(self, names: Sequence[str]) -> dict[int, str]:
         """The features of single panels by their places; what comes later counts.
@@ -47,6 +55,10 @@ class Rules:
                 # A part that is held nowhere else is no longer than the whole gap.
                 usual = found.get(part, np.full(len(seam_panels), general.get("gap", np.inf)))
                 found[part] = np.where(np.isnan(asked), usual, asked)
+        if "gap" in found:
+            # Where nothing is said of the whole it may be what its parts allow of it, and is no further limit.
+            parts = np.linalg.norm([most for part, most in found.items() if part != "gap"], axis=0)
+            found["gap"] = np.where(np.isinf(found["gap"]), _MORE * parts, found["gap"])
         return found
 
     def joints(self, names: Sequence[str], seam_panels: IntArray) -> dict[int, float]:
@@ -57,9 +69,12 @@ class Rules:
         """The rules for these panels with these features.
 
         Raises:
-            SettingsError: a rule names what is not there, or asks what has no meaning for a panel.
+            SettingsError: a rule names what is not there, or asks what has no meaning for a panel, or two of them
+                contradict each other.
         """
-        return tuple(posed for rule in self.rules for posed in rule.pose(reference, features))
+        posed = tuple(posed for rule in self.rules for posed in rule.pose(reference, features))
+        refuse_contradictions(posed, [panel.name for panel in reference.panels])
+        return posed
 
     def with_made(self, made: Callable[[LockRule], LockRule]) -> Rules:
         """The same where locks to earlier deliveries know what these hold."""

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from cadpanel.arrays import IntArray
+from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.bends import NUMBERS, bends_of, common, require_bends
@@ -67,7 +67,11 @@ class EqualRule(Rule):
 class Alike(Posed):
     """Panels with bends that are alike in one number."""
 
-    def __init__(self, names: Sequence[str], panels: IntArray, bends: int, what: str) -> None:
+    def __init__(
+        self, names: Sequence[str], panels: IntArray, bends: int, what: str, side: Array | None = None
+    ) -> None:
+        """Make the `what` of panels (n,) equal, or equal but for the signs (n,) of their sides."""
+        self._side = np.ones(len(panels)) if side is None else side
         self._panels, self._bends, self._number = panels, bends, NUMBERS.index(what)
         self._names = [names[i] for i in panels.tolist()]
         # A chain of neighbours leaves the matrix of a strip as narrow as it is.
@@ -79,13 +83,19 @@ class Alike(Posed):
         pair = np.array([pair_of[one, two] for one, two in self.links.tolist()], dtype=np.intp)
         what = (RADIUS, HALF_ANGLE)[self._number]
         count = panels.layout.panels
-        return [AlikeTerm(first, second, pair, bends=self._bends, what=what, within=_NEARLY, panels=count)]
+        sides = np.ones(count)
+        sides[self._panels] = self._side
+        return [AlikeTerm(first, second, pair, bends=self._bends, what=what, within=_NEARLY, sides=sides)]
 
     def settled(self, bends: Bends, choice: int) -> Bends:
         """See `Posed.settled`."""
         del choice
         values, held = bends.values.copy(), bends.held.copy()
-        values[self._panels, : self._bends, self._number] = common(bends, self._panels)[: self._bends, self._number]
+        turned = bends.values.copy()
+        turned[self._panels, :, 1] *= self._side[:, None]
+        alike = common(replace(bends, values=turned), self._panels)[: self._bends, self._number]
+        signs = self._side[:, None] if self._number else 1.0
+        values[self._panels, : self._bends, self._number] = signs * alike
         held[self._panels, : self._bends, self._number] = True
         return replace(bends, values=values, held=held)
 
@@ -93,7 +103,7 @@ class Alike(Posed):
         """See `Posed.outcome`."""
         found = bends_of([fitted.shapes[i] for i in self._panels])[:, : self._bends, self._number]
         angles = bool(self._number)
-        shown = np.degrees(found) if angles else found
+        shown = np.degrees(self._side[:, None] * found) if angles else found
         return Outcome(
             rule=f"{called(self._names)}: equal {'half angle' if angles else 'radius'}",
             measure="spread of half angles" if angles else "spread of radii",

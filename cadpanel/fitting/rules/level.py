@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -13,13 +14,14 @@ from cadpanel.errors import SettingsError
 from cadpanel.features.panel_edges import Edge
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.boundary import boundary_of, places_in
-from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, seams_between, words_of
+from cadpanel.fitting.rules.rule import Fitted, Outcome, Place, Posed, Rule, seams_between, words_of
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
 from cadpanel.terms.limits.limit import Panels
-from cadpanel.terms.rules.heights import UP, HeightTerm
+from cadpanel.terms.limits.planes import PlaneTerm
 from cadpanel.terms.term import HeldTerm
 
+UP = np.array([0.0, 0.0, 1.0])
 # A drawn edge that rises by less than this share of its length is meant to be level.
 _LEVEL = 0.05
 _MARGIN = 1e-3
@@ -89,9 +91,17 @@ class _Level(Posed):
         # The places of a panel's own points among all that stand in one row.
         found = {panel: places_in(panels.layout, panel) for panel in np.unique(self._own).tolist()}
         places = np.array([found[panel][point] for panel, point in zip(self._own, self._where, strict=True)])
-        heights = (self._heights - place.centre @ UP) / place.length
+        # In a panel's own frame: which way is up, and how high over its origin the seam is drawn.
+        up = UP @ place.axes[self._own]
+        heights = (self._heights - (place.origins[self._own] + place.centre) @ UP) / place.length
         within = np.full(len(places), 0.5 * (1.0 - _MARGIN) * self._within / place.length)
-        return [HeightTerm(self._own, places, heights, within, place)]
+        return [PlaneTerm(self._own, places, up, heights, within, panels.layout.panels, gives_way=True)]
+
+    def places(self) -> list[Place]:
+        """See `Posed.places`: where in x and y does not matter."""
+        within = (math.inf, math.inf, 0.5 * self._within)
+        points = zip(self._own.tolist(), self._where.tolist(), self._heights.tolist(), strict=True)
+        return [Place(self._rule, panel, point, (0.0, 0.0, height), within) for panel, point, height in points]
 
     def outcome(self, fitted: Fitted) -> Outcome:
         """See `Posed.outcome`: twice the largest distance from a height."""

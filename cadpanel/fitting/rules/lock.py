@@ -12,7 +12,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.rules.boundary import boundary_of, places_in
-from cadpanel.fitting.rules.rule import Fitted, Outcome, Posed, Rule, called, places_of, words_of
+from cadpanel.fitting.rules.rule import Fitted, Outcome, Place, Posed, Rule, called, places_of, words_of
 from cadpanel.reference.model import PanelReference, Reference
 from cadpanel.setting import Range, require
 from cadpanel.terms.limits.limit import Panels
@@ -138,6 +138,15 @@ class _Locked(Posed):
         panel_of = np.concatenate(own)
         within = np.full(len(panel_of), (1.0 - _MARGIN) * self._within / place.length)
         return [NearTerm(panel_of, np.concatenate(stand), np.concatenate(points), within, panels.layout.panels)]
+
+    def places(self) -> list[Place]:
+        """See `Posed.places`."""
+        within = (self._within,) * 3
+        return [
+            Place(self._rule, panel, point, tuple(at), within)
+            for panel, (which, there) in self._held
+            for point, at in zip(which.tolist(), there.tolist(), strict=True)
+        ]
 
     def outcome(self, fitted: Fitted) -> Outcome:
         """See `Posed.outcome`."""

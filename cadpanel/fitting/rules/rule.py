@@ -76,6 +76,29 @@ class Bends:
     held: BoolArray
     frozen: BoolArray
 
+    def same(self, other: Bends) -> bool:
+        """Whether the same of them are to be fixed at the same values."""
+        return bool(np.array_equal(self.held, other.held) and (self.values == other.values)[self.held].all())
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a rule wants a point of a panel's boundary.
+
+    Attributes:
+        rule: in a few words.
+        panel: which.
+        point: its place among the panel's own, see `boundary.boundary_of`.
+        at: where, mm.
+        within: how far from there in x, y and z; infinite where it does not matter.
+    """
+
+    rule: str
+    panel: int
+    point: int
+    at: tuple[float, float, float]
+    within: tuple[float, float, float]
+
 
 class Posed(ABC):
     """A rule for the panels of one reference.
@@ -98,6 +121,10 @@ class Posed(ABC):
             pair_of: which pair of coupled panels two of them are.
         """
         del panels, pair_of
+        return []
+
+    def places(self) -> list[Place]:
+        """Where it wants points of panels to be."""
         return []
 
     def settled(self, bends: Bends, choice: int) -> Bends:
@@ -154,6 +181,14 @@ class Rule(ABC):
             if value != one.default:
                 found[one.name] = value
         return found
+
+    def check(self, allowed: Mapping[str, float]) -> None:
+        """Refuse what contradicts the limits, by their names, mm or shares: no search would find it.
+
+        Raises:
+            SettingsError: saying which limit is in the way.
+        """
+        del allowed
 
     def features(self, names: Sequence[str]) -> dict[int, str]:
         """The features that it gives to single panels, by their places."""

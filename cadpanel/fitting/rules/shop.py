@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -16,6 +16,7 @@ from cadpanel.fitting.rules.equal import SAME_RADIUS
 from cadpanel.fitting.rules.rule import Bends, Fitted, Outcome, Posed, Rule
 from cadpanel.reference.model import Reference
 from cadpanel.setting import require
+from cadpanel.terms.limits.min_radius import MinRadius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +50,15 @@ class ShopRule(Rule):
             require("radius of a tool of the [shop]", radius, least=0.1, unit=" mm")
             require("radius of the skin over a tool of the [shop]", radius + self.add, least=0.1, unit=" mm")
         object.__setattr__(self, "radii", tuple(sorted({float(radius) for radius in given})))
+
+    def check(self, allowed: Mapping[str, float]) -> None:
+        """See `Rule.check`: a tool rolls no tighter than the least radius."""
+        widest, least = self.radii[-1] + self.add, allowed[MinRadius.name]
+        if widest < least:
+            raise SettingsError(
+                f"the widest tool of the [shop] makes a radius of {widest:g} mm, where {least:g} mm is the least: "
+                "name a wider tool, or allow a tighter radius"
+            )
 
     def pose(self, reference: Reference, features: Sequence[PanelFeature]) -> list[Posed]:
         """See `Rule.pose`; flat panels need no tool."""

@@ -13,11 +13,13 @@ from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.min_radius import MinRadius
 from cadpanel.terms.limits.obliqueness import Obliqueness
 from cadpanel.terms.limits.outline_drift import DriftOutline
+from cadpanel.terms.limits.seam_level import SeamLevel
 from cadpanel.terms.limits.seam_turn import SeamTurn
 
 LIMITS: tuple[Limit, ...] = (
     SeamTurn(),
     Evenness(),
+    SeamLevel(),
     Kink(),
     DriftAlong(),
     DriftAcross(),

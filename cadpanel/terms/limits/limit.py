@@ -99,6 +99,11 @@ class Measured(Shapes, Protocol):
         ...
 
     @property
+    def off_level(self) -> Array:
+        """(panels,) of the place on a level seam that is farthest from its drawn plane, mm; nan where there is none."""
+        ...
+
+    @property
     def kink(self) -> Array:
         """(seams,) radians."""
         ...
@@ -150,6 +155,7 @@ class Limit(ABC):
         asked: whether it is a setting at all, or always the default.
         at_least: whether the measure must not fall below the limit; else it must not exceed it.
         yields: whether it gives way where what panels must keep to cannot be kept with it.
+        yields_last: whether it does so only where the others that yield do not suffice.
         remedy: what to allow where it cannot be kept, "more drift".
         rows: of report and tables; the last is what the limit holds, its worst over all panels.
         weight: which of the paper's weights rules its terms where weights are given instead of a tolerance.
@@ -166,6 +172,7 @@ class Limit(ABC):
     asked: bool = True
     at_least: bool = False
     yields: bool = False
+    yields_last: bool = False
     remedy: str
     rows: tuple[Row, ...]
     weight: str | None = None

@@ -23,7 +23,7 @@ class AlikeTerm(HeldTerm):
     """
 
     def __init__(
-        self, first: IntArray, second: IntArray, pair: IntArray, *, bends: int, what: int, within: float, panels: int
+        self, first: IntArray, second: IntArray, pair: IntArray, *, bends: int, what: int, within: float, sides: Array
     ) -> None:
         """Hold them within a share of the radius, or radians.
 
@@ -34,11 +34,11 @@ class AlikeTerm(HeldTerm):
             bends: how many curved patches each of them has.
             what: `RADIUS` or `HALF_ANGLE`.
             within: share or radians.
-            panels: number of all panels.
+            sides: (panels,) of all panels, -1 for those whose half angles count turned about.
         """
         self.blocks, self.pair = (first, second), pair
-        self._bends, self._what = bends, what
-        self.panels = panels
+        self._bends, self._what, self._sides = bends, what, sides
+        self.panels = len(sides)
         self.hold = Hold(np.full((len(first), bends), _SCALE * within), weight=0.0, gives_way=True)
 
     def vectors(self, state: State) -> Array:
@@ -58,16 +58,17 @@ class AlikeTerm(HeldTerm):
         told = np.zeros((layout.panels, self._bends))
         rates = np.zeros((layout.panels, self._bends, layout.size if derivatives else 0))
         for group, walked in zip(layout.groups, state.walks, strict=True):
+            side = self._sides[group.panels]
             curved = [i for i, bent in enumerate(group.feature.curved) if bent]
             for place, patch in enumerate(curved[: self._bends]):
                 dimensions, own = walked.dimensions[patch], group.feature.patch_slice(patch)
                 radius, value = dimensions.values[:, RADIUS], dimensions.values[:, self._what]
                 told[group.panels, place] = _SCALE * (
-                    np.log(np.abs(radius)) if self._what == RADIUS else np.sign(radius) * value
+                    np.log(np.abs(radius)) if self._what == RADIUS else side * np.sign(radius) * value
                 )
                 if not derivatives:
                     continue
-                slope = 1.0 / radius if self._what == RADIUS else np.sign(radius)
+                slope = 1.0 / radius if self._what == RADIUS else side * np.sign(radius)
                 by_numbers = np.zeros((len(radius), len(group.feature.numbers)))
                 by_numbers[:, own] = _SCALE * slope[:, None] * dimensions.by_numbers()[:, self._what]
                 by_unknowns = group.feature.by_unknowns(by_numbers)

@@ -121,6 +121,15 @@ def test_level_seams_of_a_strip_that_lies_and_leaning_ones_of_a_ring_are_refused
             panels_of(model_of(*belt), divide=3, seams=seams)
 
 
+@pytest.mark.parametrize(
+    ("faces", "kind"),
+    [(strip_faces(), Lengthwise), ([arc_face(2000.0, 0.0, 200.0), arc_face(2000.0, 200.0, 360.0)], Round)],
+    ids=["lengthwise", "round"],
+)
+def test_free_seams_are_cut_as_square_ones(faces, kind):
+    assert isinstance(division(*faces, seams="free"), kind)
+
+
 def test_equal_parts_are_as_long_as_the_length_says():
     found = division(*strip_faces(Lip(length=9000.0, twist=0.0, taper=0.0)))
     assert found.longest_panel(6) == pytest.approx(1500.0, rel=EQUAL)

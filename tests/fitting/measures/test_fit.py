@@ -96,7 +96,9 @@ def compare(one: Measures, other: Measures, within: float) -> None:
             a, b = np.concatenate([*a, np.zeros(0)]), np.concatenate([*b, np.zeros(0)])
         # Where the closest point leaps from end to end, the parts of a gap leap with it.
         most = within + PARTS * one.max_seam_gap if field.name in ("seam_width", "seam_step") else within
-        assert np.max(np.abs(np.asarray(a) - np.asarray(b)), initial=0.0) <= most, field.name
+        a, b = np.asarray(a), np.asarray(b)
+        assert np.array_equal(np.isnan(a), np.isnan(b)), field.name
+        assert np.max(np.abs(np.nan_to_num(a) - np.nan_to_num(b)), initial=0.0) <= most, field.name
 
 
 # ----------------------------------------------------------------------------------------------------------------- laws

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cadpanel.errors import SettingsError
@@ -65,6 +66,7 @@ def test_every_rule_of_the_catalogue_is_read_and_read_back(tmp_path: Path) -> No
         ({"equal": [{"panels": 3, "radius": True}]}, "names like 'NW-03'"),
         ({"kinds": {"most": 0}}, "at least 1"),
         ({"kinds": {"most": True}}, "are a number"),
+        ({"kinds": {"most": 2, "of": "moulds"}}, "of 'bends' or of 'radii', not of 'moulds'"),
         ({"seam": [{"between": ["A"], "step": 1}]}, "between two panels"),
         ({"seam": [{"between": ["A", "B"]}]}, "gap, width, step or shift, or its joint"),
         ({"seam": [{"between": ["A", "B"], "step": -1}]}, "at least 0.001 mm"),
@@ -109,6 +111,13 @@ def test_a_rule_about_bends_wants_panels_that_bend_alike() -> None:
     flat = {"feature": [{"panels": "N 2", "feature": "plane-cone-cone-plane"}]}
     with pytest.raises(SettingsError, match="'N 1' has 1, 'N 2' has 2"):
         ruled({**flat, "equal": [{"panels": "*", "radius": True}]})
+
+
+def test_the_whole_gap_of_one_seam_limits_no_other_one_by_default() -> None:
+    rules = rules_of({"seam": [{"between": ["A", "B"], "gap": 0.5}, {"between": ["B", "C"], "step": 4.0}]})
+    assert rules is not None
+    found = rules.gaps(FitSettings(shift=12.0).gaps, ["A", "B", "C"], np.array([[0, 1], [1, 2]]))
+    assert found["gap"] == pytest.approx([0.5, 26.0])
 
 
 @pytest.mark.parametrize(

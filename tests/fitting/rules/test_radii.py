@@ -8,8 +8,10 @@ import pytest
 from cadpanel.errors import SettingsError
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import Cone, Cylinder, Plane
+from cadpanel.fitting.rules.bends import bends_of
 from cadpanel.fitting.rules.equal import SAME_RADIUS
-from cadpanel.fitting.rules.kinds import parted
+from cadpanel.fitting.rules.kinds import KindsOfBends, parted
+from cadpanel.fitting.rules.rule import Bends
 from tests.ruled import free, radii, ruled
 
 
@@ -56,13 +58,28 @@ def test_a_fixed_radius_has_no_tool() -> None:
         ruled({"shop": {"radii": [300]}}, feature="planar-quadrilateral")
 
 
-def test_there_are_no_more_kinds_than_asked_for_and_one_kind_is_a_group() -> None:
-    two, one = (ruled({"kinds": {"most": most}}) for most in (2, 1))
-    assert len(np.unique(np.round(radii(two), 6))) == 2
+def test_there_are_no_more_kinds_of_bends_than_asked_for_or_of_radii_alone() -> None:
+    bends, one = (ruled({"kinds": kinds}) for kinds in ({"most": 2}, {"most": 1, "of": "radii"}))
+    cones = np.abs(bends_of(bends.shapes)[:, 0])
+    assert len(np.unique(np.round(cones, 6), axis=0)) == 2
+    assert bends.tolerance_met
+    assert bends.outcomes[0].found == 2.0
     assert len(np.unique(np.round(radii(one), 6))) == 1
-    assert two.tolerance_met
-    assert two.outcomes[0].found == 2.0
-    assert free().measures.overall_rms < two.measures.overall_rms < one.measures.overall_rms
+    assert len(np.unique(np.round(bends_of(one.shapes)[:, 0, 1], 6))) > 1
+    assert free().measures.overall_rms < min(bends.measures.overall_rms, one.measures.overall_rms)
+
+
+def test_a_kind_of_bends_is_a_cone_whichever_of_its_ends_lies_first() -> None:
+    names, panels = list("abcde"), np.arange(5)
+    kinds = KindsOfBends(names, panels, 2, 2000.0, np.full(5, True))
+    cones = [(300.0, 0.04), (303.0, -0.05), (300.0, 0.2), (305.0, 0.06), (300.0, -0.22)]
+    bends = Bends(np.array(cones)[:, None], np.zeros((5, 1, 2), dtype=bool), np.zeros(5, dtype=bool))
+    for alike in kinds.groupings(bends.values)[0]:
+        bends = alike.settled(bends, 0)
+    assert bends.held.all()
+    found = bends.values[:, 0]
+    assert found[:, 1] == pytest.approx([0.05, -0.05, 0.21, 0.05, -0.21])
+    assert np.ptp(found[[0, 1, 3], 0]) == np.ptp(found[[2, 4], 0]) == 0.0
 
 
 def test_kinds_are_parted_as_well_as_can_be() -> None:

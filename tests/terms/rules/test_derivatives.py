@@ -6,8 +6,8 @@ import pytest
 from cadpanel.features.patches import DIMENSIONS
 from cadpanel.fitting.rules.boundary import boundary_of, places_in
 from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.terms.limits.planes import PlaneTerm
 from cadpanel.terms.rules.alike import HALF_ANGLE, RADIUS, AlikeTerm
-from cadpanel.terms.rules.heights import HeightTerm
 from cadpanel.terms.rules.mirrored import Images, MirrorTerm
 from cadpanel.terms.rules.near import NearTerm
 from tests.terms.models import DIFFERENCES, Together, case_of, jacobian_fault, mixed_case
@@ -18,8 +18,15 @@ FOLD, ALL_ROUND = "plane-cone-plane", "own double fold"
 def alike(problem, what):
     pairs = problem.pairs
     bends = sum(problem.layout.feature_of[0].curved)
+    sides = np.array([1.0, -1.0, 1.0])
     return AlikeTerm(
-        pairs[:, 0], pairs[:, 1], np.arange(len(pairs)), bends=bends, what=what, within=0.1, panels=problem.panels
+        pairs[:, 0],
+        pairs[:, 1],
+        np.arange(len(pairs)),
+        bends=bends,
+        what=what,
+        within=0.1,
+        sides=sides,
     )
 
 
@@ -45,7 +52,8 @@ def near(problem, panel=1):
 def level(problem):
     places = places_in(problem.layout, 1)
     count = len(places)
-    return HeightTerm(np.full(count, 1), places, np.full(count, 0.3), np.full(count, 0.1), problem.place)
+    normals = np.tile([0.6, 0.0, 0.8], (count, 1))
+    return PlaneTerm(np.full(count, 1), places, normals, np.full(count, 0.3), np.full(count, 0.1), problem.panels)
 
 
 def weighed(problem, term):

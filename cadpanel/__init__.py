@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from cadpanel.atomic.result import ConeFit, CylinderFit, PlaneFit
     from cadpanel.brep.building.sheet import build_skin, build_solid
     from cadpanel.brep.survey import Survey
+    from cadpanel.delivery.assemble import assemble
     from cadpanel.delivery.diff import diff
     from cadpanel.delivery.verify import Verification, verify
     from cadpanel.features.feature import Feature
@@ -86,6 +87,7 @@ __all__ = [
     "Survey",
     "Verification",
     "Weights",
+    "assemble",
     "build_skin",
     "build_solid",
     "compare",
@@ -117,6 +119,7 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
+        "delivery.assemble": ("assemble",),
         "delivery.diff": ("diff",),
         "delivery.verify": ("Verification", "verify"),
         "features.feature": ("Feature",),

@@ -25,7 +25,7 @@ HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPy
 
 # What users import from cadpanel itself. A name that leaves this list breaks someone's script.
 PUBLIC = {
-    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify", "diff"),
+    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify", "diff", "assemble"),
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step", "unroll"),
     *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch", "FlatPattern"),

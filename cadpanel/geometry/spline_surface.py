@@ -63,6 +63,48 @@ class SplineSurfaces:
             result[part] = self._evaluate(owners[part], parameters[part])
         return result
 
+    def evaluate_grids(self, owners: IntArray, u: Array, v: Array) -> Array:
+        """(k, n, m, 3, 3) the same on a grid of each of the (k,) owners, a fourth of the work of point by point.
+
+        Args:
+            owners: (k,) which surfaces.
+            u: (k, n) parameters along u of each grid.
+            v: (k, m) the same along v.
+        """
+        result = np.empty((*u.shape, v.shape[1], 3, 3))
+        at_once = max(CHUNK // max(result[0, ..., 0, 0].size, 1), 1) if len(owners) else 1
+        for start in range(0, len(owners), at_once):
+            part = slice(start, start + at_once)
+            result[part] = self._evaluate_grids(owners[part], u[part], v[part])
+        return result
+
+    def _evaluate_grids(self, owners: IntArray, u: Array, v: Array) -> Array:
+        (span_u, basis_u, slope_u), (span_v, basis_v, slope_v) = (
+            self._basis(way, np.repeat(owners, at.shape[1]), at.ravel()) for way, at in enumerate((u, v))
+        )
+        rows, columns = span_u.reshape(u.shape) - self._degrees[0], span_v.reshape(v.shape) - self._degrees[1]
+        first = columns.min(axis=1, keepdims=True)
+        corner = (self._first_poles[owners, None] + first + rows * self._row_lengths[owners, None])[..., None]
+        # Of every row no more than the grid reaches; the last surface of all may have no more.
+        reach = np.arange((columns - first).max() + self._degrees[1] + 1)
+        lines = np.zeros((2, *u.shape, len(reach), self._poles.shape[-1]))
+        for i in range(self._degrees[0] + 1):
+            across = i * self._row_lengths[owners, None, None]
+            poles = self._poles[np.minimum(corner + across + reach, len(self._poles) - 1)]
+            lines[0] += basis_u[i].reshape(*u.shape, 1, 1) * poles
+            lines[1] += slope_u[i].reshape(*u.shape, 1, 1) * poles
+        values = np.zeros((3, *u.shape, v.shape[1], self._poles.shape[-1]))
+        every, line = np.arange(len(owners))[:, None, None], np.arange(u.shape[1])[:, None]
+        for j in range(self._degrees[1] + 1):
+            near = lines[:, every, line, (columns - first + j)[:, None]]
+            basis = basis_v[j].reshape(len(v), 1, -1, 1)
+            values[0] += basis * near[0]
+            values[1] += basis * near[1]
+            values[2] += slope_v[j].reshape(basis.shape) * near[0]
+        if values.shape[-1] > 3:
+            values = _quotient(values.reshape(3, -1, 4)).reshape(*values.shape[:-1], 3)
+        return np.moveaxis(values, 0, -2)
+
     def _evaluate(self, owners: IntArray, parameters: Array) -> Array:
         (span_u, basis_u, slope_u), (span_v, basis_v, slope_v) = (
             self._basis(way, owners, parameters[:, way]) for way in range(2)

@@ -21,19 +21,10 @@ from pathlib import Path
 from shutil import rmtree
 from typing import NamedTuple, TypeVar
 
-from OCP.IFSelect import IFSelect_RetDone
-from OCP.Interface import Interface_Static
-from OCP.STEPCAFControl import STEPCAFControl_Writer
-from OCP.STEPControl import STEPControl_AsIs
-from OCP.TCollection import TCollection_ExtendedString
-from OCP.TDataStd import TDataStd_Name
-from OCP.TDocStd import TDocStd_Document
-from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
 from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, certify
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind, Sheet
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.outputs.catalogue import OUTPUTS
@@ -55,6 +46,7 @@ from cadpanel.geometry.patches import ConePatch
 from cadpanel.reference.model import Reference
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
+from tests.kernel_step import write_by_kernel
 
 Result = TypeVar("Result")
 
@@ -89,7 +81,13 @@ def local_shapes(reference: Reference) -> tuple[Panel, ...]:
 def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helper: Helper | None) -> Certificate:
     """The certificate of both files, every seam measured."""
     expected = [
-        ExpectedPanel(name=one.shape.name, volume=one.volume, kinds=_kinds(one.shape), corners=one.shape.corners())
+        ExpectedPanel(
+            name=one.shape.name,
+            volume=one.volume,
+            kinds=_kinds(one.shape),
+            corners=one.shape.corners(),
+            sheet=Sheet(shape=one.shape, thickness=SheetSettings().thickness, skin_side=SheetSettings().skin_side),
+        )
         for one in built
     ]
     names = [panel.name for panel in reference.panels]
@@ -106,20 +104,6 @@ def prove(folder: Path, reference: Reference, built: Sequence[PanelSheet], helpe
 def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
     cones: dict[bool, PatchKind] = {True: "cone", False: "cylinder"}
     return tuple(cones[patch.half_angle != 0.0] if isinstance(patch, ConePatch) else "plane" for patch in shape.patches)
-
-
-def write_bare(path: Path, built: Sequence[PanelSheet]) -> None:
-    """What OCCT's XCAF writer makes of the same solids and names, left to its own settings."""
-    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
-    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    for panel in built:
-        label = tool.AddShape(panel.solid, False)
-        TDataStd_Name.Set_s(label, TCollection_ExtendedString(panel.shape.name, True))
-    writer = STEPCAFControl_Writer()
-    Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
-    writer.Transfer(document, STEPControl_AsIs)
-    if writer.Write(str(path)) != IFSelect_RetDone:
-        raise OSError(f"{path} could not be written")
 
 
 class Took(NamedTuple):
@@ -155,7 +139,7 @@ def count_interpreter(seconds: dict[str, Took], step: str, before: float) -> Non
     seconds[step] = took._replace(processor=took.processor + now().processor - before)
 
 
-def run(panels: int, folder: Path) -> dict[str, Took]:
+def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Took]:
     """Seconds of every step, the bare writer's last."""
     silence_kernel()
     start_reader()  # as a command does, before it loads the kernel itself
@@ -184,13 +168,16 @@ def run(panels: int, folder: Path) -> dict[str, Took]:
     count_interpreter(seconds, "verify", before)
     if not certificate.holds:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")
-    timed(seconds, "XCAF writer", lambda: write_bare(folder / "bare.step", built))
-    for_the_shop(seconds, folder, reference, built)
+    bare = [(one.shape.name, one.solid) for one in built]
+    timed(seconds, "XCAF writer", lambda: write_by_kernel(folder / "bare.step", bare))
+    for_the_shop(seconds, folder, reference, built, outputs)
     return seconds
 
 
-def for_the_shop(seconds: dict[str, Took], folder: Path, reference: Reference, built: Sequence[PanelSheet]) -> None:
-    """What a shop gets besides STEP: flat parts, every other output, and the proof of them."""
+def for_the_shop(
+    seconds: dict[str, Took], folder: Path, reference: Reference, built: Sequence[PanelSheet], outputs: Sequence[str]
+) -> None:
+    """What a shop gets besides STEP: flat parts, other outputs, all if none is named, and the proof of them."""
     sheet, shop = SheetSettings(), ShopSettings()
     parts = timed(seconds, "flat parts", lambda: flat_parts([one.shape for one in built], sheet, shop))
     records = with_flat_parts([record(one) for one in built], built, parts, shop.density)
@@ -203,7 +190,8 @@ def for_the_shop(seconds: dict[str, Took], folder: Path, reference: Reference, b
         seams=seams_of(reference),
         parts=parts,
     )
-    timed_ones = [output for output in OUTPUTS if not output.always and output.name != "html"]  # a page shows a fit
+    wanted = {*outputs} or {output.name for output in OUTPUTS} - {"html"}  # a page shows a fit
+    timed_ones = [output for output in OUTPUTS if not output.always and output.name in wanted]
     for output in timed_ones:
         for name in output.folders:
             rmtree(folder / name, ignore_errors=True)
@@ -252,11 +240,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Time a delivery against OCCT's own STEP writer.")
     parser.add_argument("--panels", type=int, default=1000)
     parser.add_argument("--runs", type=int, default=1)
+    parser.add_argument("--outputs", nargs="*", default=(), help="time these besides STEP; all if none is named")
     parser.add_argument("--folder", type=Path, help="keep the files there, and use the strip that is there")
     chosen = parser.parse_args()
     for _ in range(chosen.runs):
         with tempfile.TemporaryDirectory() as temporary:
-            seconds = run(chosen.panels, chosen.folder or Path(temporary))
+            seconds = run(chosen.panels, chosen.folder or Path(temporary), chosen.outputs)
         print_table(chosen.panels, seconds)
 
 

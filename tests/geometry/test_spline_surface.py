@@ -56,6 +56,19 @@ def test_points_and_derivatives_are_those_of_scipy(seed, degree_u, degree_v, rat
 
 
 @settings(max_examples=10)
+@given(seed=seeds, degree_u=degrees, degree_v=degrees, rational=st.booleans())
+def test_a_grid_is_what_its_points_are_one_by_one(seed, degree_u, degree_v, rational):
+    random = np.random.default_rng(seed)
+    many = SplineSurfaces([random_surface(random, (degree_u, degree_v), rational) for _ in range(4)])
+    owners = np.array([3, 0, 2, 3, 1])
+    u, v = random.uniform(0.0, 1.0, (5, 7)), np.sort(random.uniform(0.0, 1.0, (5, 3)), axis=1)
+    u[0, 0], v[0, -1] = 0.0, 1.0
+    parameters = np.stack(np.broadcast_arrays(u[:, :, None], v[:, None, :]), axis=-1)
+    wanted = many.evaluate(np.repeat(owners, 21), parameters.reshape(-1, 2)).reshape(5, 7, 3, 3, 3)
+    np.testing.assert_allclose(many.evaluate_grids(owners, u, v), wanted, rtol=0.0, atol=1e-12 * np.abs(wanted).max())
+
+
+@settings(max_examples=10)
 @given(seed=seeds, rational=st.booleans())
 def test_many_surfaces_at_once_are_each_of_them_alone(seed, rational):
     random = np.random.default_rng(seed)

@@ -36,7 +36,7 @@ FEWEST_ACROSS, ACROSS_A_SPAN, MOST_ACROSS = 4, 2, 32
 EVEN = (GeomAbs_Plane, GeomAbs_Cylinder)
 # Gauss points each way over each span of a whole face, more and more until two areas agree to within this part, or a
 # face would have more points than so many.
-OVER_SPAN = (3, 6, 12, 24)
+OVER_SPAN = (2, 4, 8, 16, 24)
 AGREE = 1e-5
 MOST_POINTS = 500_000
 # About so many points of whole faces are evaluated at once.
@@ -82,43 +82,44 @@ def whole_areas(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface],
         adaptors: the same, as the kernel has them.
         chosen: (k,) which.
     """
-    areas = _integrated(surfaces, adaptors, chosen, OVER_SPAN[0])
-    spans = np.array([np.prod(spans_of(adaptors[face])) for face in chosen.tolist()])
+    breaks = [(breaks_of(adaptors[face], 0), breaks_of(adaptors[face], 1)) for face in chosen.tolist()]
+    spans = np.array([(len(along) - 1) * (len(across) - 1) for along, across in breaks])
     left = np.arange(len(chosen))
+    areas = _integrated(surfaces, chosen, breaks, OVER_SPAN[0])
     for count in OVER_SPAN[1:]:
         left = left[spans[left] * count**2 <= MOST_POINTS]
-        finer = _integrated(surfaces, adaptors, chosen[left], count)
+        finer = _integrated(surfaces, chosen[left], [breaks[place] for place in left.tolist()], count)
         off = np.abs(finer - areas[left]) > AGREE * finer
         areas[left] = finer
         left = left[off]
     return areas
 
 
-def _integrated(surfaces: SurfaceBatch, adaptors: Sequence[BRepAdaptor_Surface], chosen: IntArray, count: int) -> Array:
-    """The same with so many Gauss points each way over each span."""
+def _integrated(surfaces: SurfaceBatch, chosen: IntArray, breaks: Sequence[tuple[Array, Array]], count: int) -> Array:
+    """The same with so many Gauss points each way over each span between breaks, faces of as many at once."""
     areas = np.zeros(len(chosen))
-    places: list[tuple[int, Array, Array]] = []
-    waiting = 0
-    for place, face in enumerate(chosen.tolist()):
-        (u, weights_u), (v, weights_v) = (_rule(adaptors[face], axis, count) for axis in (0, 1))
-        parameters = np.stack([np.repeat(u, len(v)), np.tile(v, len(u))], axis=-1)
-        places.append((place, parameters, np.outer(weights_u, weights_v).ravel()))
-        waiting += len(parameters)
-        if waiting >= AT_ONCE or place == len(chosen) - 1:
-            owners = np.repeat([place for place, _, _ in places], [len(own) for _, own, _ in places])
-            _, along_u, along_v = surfaces.evaluate(chosen[owners], np.concatenate([own for _, own, _ in places]))
-            parts = norm(cross(along_u, along_v)) * np.concatenate([weights for _, _, weights in places])
-            areas += np.bincount(owners, parts, minlength=len(areas))
-            places, waiting = [], 0
+    alike: dict[tuple[int, int], list[int]] = {}
+    for place, (along, across) in enumerate(breaks):
+        alike.setdefault((len(along) - 1, len(across) - 1), []).append(place)
+    for spans, places in alike.items():
+        at_once = max(AT_ONCE // (spans[0] * spans[1] * count**2), 1)
+        for start in range(0, len(places), at_once):
+            part = places[start : start + at_once]
+            (u, weights_u), (v, weights_v) = (
+                _rules(np.array([breaks[place][axis] for place in part]), count) for axis in (0, 1)
+            )
+            along_u, along_v = surfaces.slopes_on_grids(chosen[part], u, v)
+            parts = norm(cross(along_u, along_v)) * weights_v[:, None]
+            areas[part] = (parts.sum(axis=2) * weights_u).sum(axis=1)
     return areas
 
 
-def _rule(surface: BRepAdaptor_Surface, axis: int, count: int) -> tuple[Array, Array]:
-    """Places along a parameter and the weights by which what is measured there adds up to an integral."""
-    breaks = breaks_of(surface, axis)
+def _rules(breaks: Array, count: int) -> tuple[Array, Array]:
+    """Places (k, n) along a parameter and the weights by which what is measured there adds up to an integral."""
     nodes, weights = _gauss(count)
-    halves = 0.5 * np.diff(breaks)[:, None]
-    return (breaks[:-1, None] + halves * (1.0 + nodes)).ravel(), (halves * weights).ravel()
+    halves = 0.5 * np.diff(breaks)[..., None]
+    places = breaks[:, :-1, None] + halves * (1.0 + nodes)
+    return places.reshape(len(breaks), -1), (halves * weights).reshape(len(breaks), -1)
 
 
 def enclosed(face: TopoDS_Face) -> float:

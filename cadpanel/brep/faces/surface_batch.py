@@ -83,13 +83,38 @@ class SurfaceBatch:
         shaped = values.reshape(*parameters.shape[:-1], 3, 3)
         return shaped[..., 0, :], shaped[..., 1, :], shaped[..., 2, :]
 
+    def slopes_on_grids(self, faces: IntArray, u: Array, v: Array) -> tuple[Array, Array]:
+        """The two first derivatives on a grid of each of some faces, each (k, n, m, 3) in mm.
+
+        Args:
+            faces: (k,) which.
+            u: (k, n) parameters along u of each grid.
+            v: (k, m) the same along v.
+        """
+        groups = self._group_of[faces]
+        values = np.empty((*u.shape, v.shape[1], 3, 3))
+        for group, splines in enumerate(self._groups):
+            chosen = np.flatnonzero(groups == group)
+            own = faces[chosen]
+            along = [_within(at[chosen], self._periods[own, None, way]) for way, at in enumerate((u, v))]
+            values[chosen] = splines.evaluate_grids(self._place_of[own], *along)
+        for place in np.flatnonzero(groups < 0).tolist():
+            grid = np.stack(np.meshgrid(u[place], v[place], indexing="ij"), axis=-1).reshape(-1, 2)
+            values[place] = kernel_values(self._others[faces[place]], grid).reshape(values.shape[1:])
+        return values[..., 1, :], values[..., 2, :]
+
     def _in_period(self, owners: IntArray, parameters: Array) -> Array:
         """The parameters, those of periodic surfaces within the period that has the poles."""
-        start, length = self._periods[owners].transpose(2, 0, 1)
-        if np.isinf(length).all():
-            return parameters
-        whole = np.where(np.isfinite(length), length, 1.0)
-        return np.where(np.isfinite(length), start + np.remainder(parameters - start, whole), parameters)
+        return _within(parameters, self._periods[owners])
+
+
+def _within(parameters: Array, periods: Array) -> Array:
+    """Parameters within periods (..., 2), each a start and a length, infinite where there is none."""
+    start, length = np.moveaxis(periods, -1, 0)
+    if np.isinf(length).all():
+        return parameters
+    whole = np.where(np.isfinite(length), length, 1.0)
+    return np.where(np.isfinite(length), start + np.remainder(parameters - start, whole), parameters)
 
 
 def kernel_values(surface: BRepAdaptor_Surface, parameters: Array) -> Array:

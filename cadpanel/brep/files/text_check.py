@@ -36,9 +36,12 @@ NOT_A_NUMBER = re.compile(
 )
 LARGEST = 1e100
 """What is larger is no length, in whatever unit."""
-# What each of them holds, found in a fraction of the time; names may hold it too.
+# What each of them holds, found in a fraction of the time; names may hold it too. Digits in a row are all made noughts,
+# as a text is found ten times faster than a pattern.
 TRACES = (b"nan", b"inf", b".#")
-LONG = re.compile(rb"e\+?0*[1-9]\d\d|\d{100}")
+LARGE_POWER = re.compile(rb"e\+?0*[1-9]\d\d")
+NOUGHTS = bytes.maketrans(b"123456789", b"0" * 9)
+MANY_DIGITS = b"0" * 100
 INSTANCE = re.compile(rb"#(\d+)\s*=")
 
 
@@ -108,7 +111,8 @@ def check_step_text(path: Path, text: bytes) -> None:
 def _check_numbers(name: str, text: bytes) -> None:
     """Refuse NaN and infinity, which the kernel would replace by numbers of its own."""
     lower = text.lower()
-    if not (any(trace in lower for trace in TRACES) or LONG.search(lower)):
+    large = LARGE_POWER.search(lower) or MANY_DIGITS in lower.translate(NOUGHTS)
+    if not (large or any(trace in lower for trace in TRACES)):
         return
     if _first_fault(text) is None:
         return

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Tool
@@ -102,10 +103,9 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
     surfaces = [_surface(face) for face in faces]
     kinds = Counter(kind for kind, _ in surfaces)
     edges = _edges_with_faces(faces)
-    shared = [_straight(edge, *(surfaces[face][1] for face in owners)) for edge, owners in edges if len(owners) == 2]
+    shared = [_straight(edge, *(surfaces[face][1] for face in edge.faces)) for edge in edges if len(edge.faces) == 2]
     straight = [found for found in shared if found is not None]
-    curves = [_piece(edge) for edge, _ in edges]
-    lies_on = np.array([(*of, -1)[:2] for _, of in edges], dtype=np.intp).reshape(-1, 2)
+    curves = [_piece(edge) for edge in edges]
     known = np.array([curve is not None for curve in curves], dtype=bool)
     pieces = [curve for curve in curves if curve is not None]
     solids = len(shapes_of(shape, TopAbs_SOLID))
@@ -122,7 +122,7 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
         solids=solids,
         shells=len(shapes_of(shape, TopAbs_SHELL)),
         valid=BRepCheck_Analyzer(shape, True, False, True).IsValid(),
-        closed=all(len(owners) == 2 for _, owners in edges),
+        closed=all(len(edge.faces) == 2 for edge in edges),
         face_kinds={kind: kinds[kind] for kind in FACE_KINDS},
         volume=volume,
         areas=areas,
@@ -133,10 +133,10 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
         vertices=boundary.vertices,
         pieces=_pieces([curve for curve, _ in pieces]),
         piece_ends=np.array([ends for _, ends in pieces]).reshape(-1, 2, 3),
-        inner=np.array([on_rims.Contains(edge) for edge, _ in edges], dtype=bool)[known],
-        piece_faces=lies_on[known],
-        other_edges=lies_on[~known],
-        other_points=_sampled([edge for (edge, _), curve in zip(edges, curves, strict=True) if curve is None]),
+        inner=np.array([on_rims.Contains(edge.edge) for edge in edges], dtype=bool)[known],
+        piece_faces=boundary.edge_faces[known],
+        other_edges=boundary.edge_faces[~known],
+        other_points=_sampled([edge for edge, curve in zip(edges, curves, strict=True) if curve is None]),
         rims=np.array([_rim(wire) for wire in rims]).reshape(-1, RIM_POINTS, 3),
         surfaces=boundary.surfaces,
         boundary=boundary,
@@ -144,29 +144,40 @@ def inspect(name: str, shape: TopoDS_Shape, stated: Stated = SILENT) -> ShapeFac
 
 
 def boundary_of(shape: TopoDS_Shape) -> Boundary:
-    """What bounds a shape, 1 ms a panel."""
+    """What bounds a shape, half a millisecond a panel."""
     faces = faces_of(shape)
     return _boundary(shape, _edges_with_faces(faces), [_surface(face)[1] for face in faces])
 
 
-def _boundary(
-    shape: TopoDS_Shape, edges: Sequence[tuple[TopoDS_Edge, list[int]]], surfaces: Sequence[list[float] | None]
-) -> Boundary:
+class _Edge(NamedTuple):
+    """An edge of a shape, with the indices of the faces on which it lies (twice the same one for a seam of a face)."""
+
+    edge: TopoDS_Edge
+    faces: list[int]
+    curve: BRepAdaptor_Curve
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Its first and its last parameter."""
+        return self.curve.FirstParameter(), self.curve.LastParameter()
+
+
+def _boundary(shape: TopoDS_Shape, edges: Sequence[_Edge], surfaces: Sequence[list[float] | None]) -> Boundary:
     return Boundary(
         vertices=vertices_of(shape),
-        edges=np.array([_points(edge) for edge, _ in edges]).reshape(-1, EDGE_POINTS, 3),
-        edge_faces=np.array([(*of, -1)[:2] for _, of in edges], dtype=np.intp).reshape(-1, 2),
+        edges=np.array([_points(edge) for edge in edges]).reshape(-1, EDGE_POINTS, 3),
+        edge_faces=np.array([(*edge.faces, -1)[:2] for edge in edges], dtype=np.intp).reshape(-1, 2),
         surfaces=np.array([numbers or [np.nan] * 9 for numbers in surfaces]).reshape(-1, 9),
     )
 
 
-def _points(edge: TopoDS_Edge) -> list[list[float]]:
+def _points(edge: _Edge) -> list[tuple[float, ...]]:
     """Points of an edge at equal steps of its parameter; a degenerate one stays in its vertex."""
-    if BRep_Tool.Degenerated_s(edge):
-        return [_xyz(BRep_Tool.Pnt_s(TopExp.FirstVertex_s(edge)))] * EDGE_POINTS
-    curve = BRepAdaptor_Curve(edge)
-    parameters = np.linspace(curve.FirstParameter(), curve.LastParameter(), EDGE_POINTS)
-    return [_xyz(curve.Value(parameter)) for parameter in parameters.tolist()]
+    if BRep_Tool.Degenerated_s(edge.edge):
+        return [BRep_Tool.Pnt_s(TopExp.FirstVertex_s(edge.edge)).Coord()] * EDGE_POINTS
+    (start, stop), value = edge.range, edge.curve.Value
+    step = (stop - start) / (EDGE_POINTS - 1)  # NumPy's linspace takes as long as the kernel
+    return [value(start + place * step).Coord() for place in range(EDGE_POINTS - 1)] + [value(stop).Coord()]
 
 
 def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:
@@ -186,16 +197,16 @@ def vertices_of(shape: TopoDS_Shape) -> Array:
     return np.array([_xyz(BRep_Tool.Pnt_s(vertex)) for vertex in vertices]).reshape(-1, 3)
 
 
-def _edges_with_faces(faces: list[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[int]]]:
-    """Every edge once, with the indices of the faces on which it lies (twice the same one for a seam of a face)."""
+def _edges_with_faces(faces: list[TopoDS_Face]) -> list[_Edge]:
+    """Every edge once."""
     known = TopTools_IndexedMapOfShape()
-    found: list[tuple[TopoDS_Edge, list[int]]] = []
+    found: list[_Edge] = []
     for index, face in enumerate(faces):
         for edge in edges_of(face):
             place = known.Add(edge)
             if place > len(found):
-                found.append((edge, []))
-            found[place - 1][1].append(index)
+                found.append(_Edge(edge, [], BRepAdaptor_Curve(edge)))
+            found[place - 1].faces.append(index)
     return found
 
 
@@ -219,12 +230,12 @@ def _surface(face: TopoDS_Face) -> tuple[str, list[float] | None]:
 
 
 def _straight(
-    edge: TopoDS_Edge, first: list[float] | None, second: list[float] | None
+    edge: _Edge, first: list[float] | None, second: list[float] | None
 ) -> tuple[list[list[float]], list[list[float]]] | None:
     """Ends and surfaces of a straight edge between two exact faces, else None."""
-    if first is None or second is None or BRepAdaptor_Curve(edge).GetType() != GeomAbs_Line:
+    if first is None or second is None or edge.curve.GetType() != GeomAbs_Line:
         return None
-    return _ends(edge), [first, second]
+    return _ends(edge.edge), [first, second]
 
 
 def _ends(edge: TopoDS_Edge) -> list[list[float]]:
@@ -251,23 +262,22 @@ def _along(edge: TopoDS_Edge, count: int) -> Array:
     return np.array([_xyz(curve.Value(place)) for place in places.tolist()])
 
 
-def _sampled(edges: Sequence[TopoDS_Edge]) -> Array:
+def _sampled(edges: Sequence[_Edge]) -> Array:
     """(o, POINTS, 3) points along edges."""
     found = []
     for edge in edges:
-        curve = BRepAdaptor_Curve(edge)
-        places = np.linspace(curve.FirstParameter(), curve.LastParameter(), POINTS)
-        found.append([_xyz(curve.Value(place)) for place in places.tolist()])
+        places = np.linspace(*edge.range, POINTS)
+        found.append([_xyz(edge.curve.Value(place)) for place in places.tolist()])
     return np.array(found).reshape(-1, POINTS, 3)
 
 
-def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | None:
+def _piece(edge: _Edge) -> tuple[list[list[float]], list[list[float]]] | None:
     """An edge as rows (center, cosine axis, sine axis, [start, stop, is arc]) and its ends; None if neither."""
-    curve = BRepAdaptor_Curve(edge)
-    start, stop = curve.FirstParameter(), curve.LastParameter()
+    curve, (start, stop) = edge.curve, edge.range
     if curve.GetType() == GeomAbs_Line:
-        origin, target = np.array(_xyz(curve.Value(start))), np.array(_xyz(curve.Value(stop)))
-        rows = [origin.tolist(), (target - origin).tolist(), [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+        origin, target = _xyz(curve.Value(start)), _xyz(curve.Value(stop))
+        way = [there - here for here, there in zip(origin, target, strict=True)]
+        rows = [origin, way, [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
     elif curve.GetType() in (GeomAbs_Ellipse, GeomAbs_Circle):
         axes, major, minor = _conic(curve)
         rows = [
@@ -278,7 +288,7 @@ def _piece(edge: TopoDS_Edge) -> tuple[list[list[float]], list[list[float]]] | N
         ]
     else:
         return None
-    return rows, _ends(edge)
+    return rows, _ends(edge.edge)
 
 
 def _conic(curve: BRepAdaptor_Curve) -> tuple[gp_Ax2, float, float]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import IO
 
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
@@ -31,44 +32,69 @@ class Header:
     note: str = ""
 
 
-def step_file(
-    shapes: Sequence[tuple[str, TopoDS_Shape, tuple[float, float, float] | None]],
+NamedShape = tuple[str, TopoDS_Shape, tuple[float, float, float] | None]
+"""A name, a shape and its colour, sRGB with components in 0 to 1."""
+
+
+def write_step_text(
+    file: IO[str],
+    shapes: Iterable[NamedShape],
     title: str,
     schema: Schema,
     placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    data: Sequence[PartData] = (),
+    data: Iterable[PartData] | None = None,
     header: Header | None = None,
-) -> str:
-    """The whole file, the origin of the shapes' coordinates placed somewhere in the assembly, mm.
+) -> None:
+    """Write the whole file, shape by shape, the origin of their coordinates placed somewhere in the assembly, mm.
 
     Args:
-        shapes: names, shapes and colours.
+        file: that is written from its beginning.
+        shapes: names, shapes and colours; each is asked for once all before it are written, and let go of.
         title: name of the assembly.
         schema: "AP242" or "AP214".
         placed: where their origin lies in the assembly.
-        data: what is said of each shape; empty to say nothing but their names.
+        data: what is said of each shape; None to say nothing but their names.
         header: who wrote it, and when.
 
     Raises:
         UnsupportedGeometry: if a shape is not made of exact panels' geometry.
     """
-    text = StepText()
-    schema_name, protocol, application = SCHEMAS[schema]
-    frame = _Frame(text, protocol, application, placed)
+    text = begin_step_text(file, title, schema, header)
+    frame = StepFrame(text, schema)
     assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
+    place = frame.placement(placed)
     styled = []
-    said = data or [PartData(number=name) for name, _, _ in shapes]
-    for number, ((name, shape, color), part_data) in enumerate(zip(shapes, said, strict=True), start=1):
+    for number, ((name, shape, color), part_data) in enumerate(_told(shapes, data), start=1):
         item = TopologyWriter(text).item(shape)
         solid = shape.ShapeType() == TopAbs_SOLID
         kind = "ADVANCED_BREP_SHAPE_REPRESENTATION" if solid else "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
         part = frame.product(name, part_data, kind, [frame.origin, item])
-        frame.place(part, assembly, number, name)
+        frame.place(part, assembly, number, name, place)
         if color is not None:
             styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
     if styled:
         text.add(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{references(styled)},#{frame.context})")
-    return _header(title, schema_name, header or Header()) + text.data() + "ENDSEC;\nEND-ISO-10303-21;\n"
+    end_step_text(file)
+
+
+def begin_step_text(file: IO[str], title: str, schema: Schema, header: Header | None) -> StepText:
+    """Write a file's header, and open its data section."""
+    file.write(_header(title, SCHEMAS[schema].name, header or Header()))
+    return StepText(file)
+
+
+def end_step_text(file: IO[str]) -> None:
+    """Close the data section and the file."""
+    file.write("ENDSEC;\nEND-ISO-10303-21;\n")
+
+
+def _told(shapes: Iterable[NamedShape], data: Iterable[PartData] | None) -> Iterator[tuple[NamedShape, PartData]]:
+    """Each shape and what is said of it."""
+    if data is not None:
+        yield from zip(shapes, data, strict=True)
+        return
+    for shape in shapes:
+        yield shape, PartData(number=shape[0])
 
 
 def _header(title: str, schema_name: str, header: Header) -> str:
@@ -82,11 +108,18 @@ def _header(title: str, schema_name: str, header: Header) -> str:
     )
 
 
-class _Frame:
+class StepFrame:
     """What all products of a file share: contexts, units, origin, colours."""
 
-    def __init__(self, text: StepText, protocol: str, application: str, placed: tuple[float, float, float]) -> None:
+    def __init__(self, text: StepText, schema: Schema) -> None:
+        """Write what all products share.
+
+        Args:
+            text: where to write.
+            schema: "AP242" or "AP214".
+        """
         self._text = text
+        _, protocol, application = SCHEMAS[schema]
         self._styles: dict[tuple[float, float, float], int] = {}
         add = text.add
         self._application = add(f"APPLICATION_CONTEXT('{application}')")
@@ -106,7 +139,10 @@ class _Frame:
         )
         self._properties = PropertyWriter(text, self.context, length)
         self.origin = self._placement((0.0, 0.0, 0.0))
-        self._place = self._placement(placed) if any(placed) else self.origin
+
+    def placement(self, place: tuple[float, float, float]) -> int:
+        """Axes at a place, those of the origin where it is there."""
+        return self._placement(place) if any(place) else self.origin
 
     def _placement(self, place: tuple[float, float, float]) -> int:
         point = self._text.add(f"CARTESIAN_POINT('',({','.join(real(float(part)) for part in place)}))")
@@ -114,25 +150,32 @@ class _Frame:
         x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
         return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
 
-    def product(self, name: str, data: PartData, kind: str, items: Sequence[int]) -> tuple[int, int]:
-        """Product definition and shape representation of a new product."""
+    def product(
+        self, name: str, data: PartData, kind: str, items: Sequence[int], documents: Sequence[int] = ()
+    ) -> tuple[int, int]:
+        """Product definition and shape representation of a new product; it may stand in documents."""
         add, said = self._text.add, ",".join(string(text) for text in (data.number, name, data.description))
         product = add(f"PRODUCT({said},(#{self._product_context}))")
         add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))")
         formation = add(f"PRODUCT_DEFINITION_FORMATION('','',#{product})")
-        definition = add(f"PRODUCT_DEFINITION('design','',#{formation},#{self._definition_context})")
+        told = f"'design','',#{formation},#{self._definition_context}"
+        definition = add(
+            f"PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS({told},{references(documents)})"
+            if documents
+            else f"PRODUCT_DEFINITION({told})"
+        )
         shape = add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
         representation = add(f"{kind}('',{references(items)},#{self.context})")
         add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
         self._properties.write(data, definition, shape)
         return definition, representation
 
-    def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str) -> None:
-        """Put a part into the assembly, its origin where that of all parts lies there."""
+    def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str, place: int) -> None:
+        """Put a part into the assembly, its origin at axes that `placement` gave."""
         add = self._text.add
         usage = add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)")
         placed = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})")
-        moved = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{self._place})")
+        moved = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{place})")
         relation = add(
             f"(REPRESENTATION_RELATIONSHIP('','',#{part[1]},#{assembly[1]})"
             f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{moved})SHAPE_REPRESENTATION_RELATIONSHIP())"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import IO
 
 ITEMS_A_LINE = 16
 
@@ -40,16 +41,21 @@ def references(ids: Iterable[int]) -> str:
 
 
 class StepText:
-    """The data section under construction: instances are numbered from 1 in the order in which they are added."""
+    """A data section that goes into a file as it grows: instances are numbered from 1 in the order in which they come.
 
-    def __init__(self) -> None:
-        self.lines: list[str] = []
+    Nothing of what is written is kept, so that memory does not grow with the number of panels.
+    """
+
+    def __init__(self, file: IO[str]) -> None:
+        self._file = file
+        self._last = 0
         self._shared: dict[tuple[str, tuple[float, ...]], int] = {}
 
     def add(self, entity: str) -> int:
         """Add an instance, for example "VECTOR('',#4,1.)", and return its number."""
-        self.lines.append(entity)
-        return len(self.lines)
+        self._last += 1
+        self._file.write(f"#{self._last}={entity};\n")
+        return self._last
 
     def shared(self, kind: str, numbers: tuple[float, ...]) -> int:
         """CARTESIAN_POINT or DIRECTION of these coordinates, one instance for equal ones until `forget`."""
@@ -63,7 +69,3 @@ class StepText:
     def forget(self) -> None:
         """Share nothing with the instances added so far: each panel keeps its own points."""
         self._shared.clear()
-
-    def data(self) -> str:
-        """The lines of the data section."""
-        return "".join(f"#{number}={entity};\n" for number, entity in enumerate(self.lines, start=1))

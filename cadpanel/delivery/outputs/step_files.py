@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -95,7 +95,7 @@ def write_solids(
         PartData(number=part_number(title, panel.shape.name), description=panel.shape.feature, validation=panel.check)
         for panel in panels
     ]
-    _write(path, [panel.solid for panel in panels], panels, f"{title} panels", schema, placed, said, header)
+    _write(path, (panel.solid for panel in panels), panels, f"{title} panels", schema, placed, said, header)
 
 
 def write_skins(
@@ -118,12 +118,12 @@ def write_skins(
     said = data or [
         PartData(number=f"{part_number(title, panel.shape.name)}/skin", validation=panel.skin_check) for panel in panels
     ]
-    _write(path, [panel.skin for panel in panels], panels, f"{title} skins", schema, placed, said, header)
+    _write(path, (panel.skin for panel in panels), panels, f"{title} skins", schema, placed, said, header)
 
 
 def _write(
     path: Path,
-    shapes: Sequence[Solid | Shell],
+    shapes: Iterable[Solid | Shell],
     panels: Sequence[PanelSheet],
     title: str,
     schema: Schema,
@@ -135,7 +135,7 @@ def _write(
     from cadpanel.brep.step.file import write_step
     from cadpanel.brep.step.products import Header
 
-    named = [(panel.shape.name, shape, colour(i)) for i, (panel, shape) in enumerate(zip(panels, shapes, strict=True))]
+    named = ((panel.shape.name, shape, colour(i)) for i, (panel, shape) in enumerate(zip(panels, shapes, strict=True)))
     header = header or Header(date=source_date())
     write_step(path, named, title=title, schema=schema, placed=placed, data=said, header=header)
 

@@ -14,11 +14,18 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cadpanel.brep.building.sheet import build_skin, build_solid, volume_of
-from cadpanel.brep.proof.inspection import inspect
+from cadpanel.brep.building.sheet import build_panel, build_skin, build_solid, volume_of
+from cadpanel.brep.proof import boundary
+from cadpanel.brep.proof.inspection import boundary_of, inspect
 from cadpanel.brep.step.file import read_step_shapes, write_step
 from cadpanel.brep.step.text import real, string
-from cadpanel.errors import DeliveryError
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.errors import DeliveryError, PanelError
+from cadpanel.geometry.volume import sheet_volume
+from tests.built import area_of
+from tests.drilled import fixed
+from tests.flat_panels import panels as panels_of
+from tests.kernel_step import write_by_kernel
 from tests.shapes import CHAINS, random_panel
 
 NAMES = ["A-01", "panel with spaces", "Süd, Ost", 'it\'s \\ "quoted"', "面板 7", "🏗 crane", "A/B;C*", "#12=X()"]
@@ -59,6 +66,47 @@ def test_solids_and_skins_read_back_are_exactly_valid_and_lose_no_digit(tmp_path
             assert apart.min(axis=0).max() < 1e-11
             if kind == TopAbs_SOLID:
                 assert volume_of(again) == pytest.approx(volume_of(built), rel=1e-12)
+
+
+@pytest.mark.parametrize("feature", ["plane-cone-plane", "plane-cylinder-plane-cone-plane", "tri-cone", "polygon of 5"])
+def test_a_file_holds_what_the_kernels_own_translator_makes_of_the_same_shapes(tmp_path, monkeypatch, feature):
+    """Solids and skins: plain, with square ends, and with holes."""
+    shape = panels_of(feature, 3)[0].straightened().shape
+    square = shape.squared(-3.0).straightened().shape
+    built = [build_panel(shape, 3.0), build_panel(square, 3.0), build_panel(shape, 3.0, "outer", drill(shape))]
+    named = [(name, one) for made in built for name, one in (("solid", made.solid), ("skin", made.skin))]
+    numbered = [(f"{name} {number}", one) for number, (name, one) in enumerate(named)]
+    write_step(tmp_path / "ours.step", [(name, one, None) for name, one in numbered], title="t")
+    write_by_kernel(tmp_path / "theirs.step", numbered)
+    ours, theirs = (read_step_shapes(tmp_path / file) for file in ("ours.step", "theirs.step"))
+    monkeypatch.setattr(boundary, "SAME_PLACE", 1e-8)  # theirs has twelve digits of metres
+    monkeypatch.setattr(boundary, "SAME_WAY", 1e-9)
+    for (name, own), (same, other) in zip(ours, theirs, strict=True):
+        assert name == same
+        assert own.ShapeType() == other.ShapeType()
+        assert boundary.difference(boundary_of(own), boundary_of(other)) is None
+        measure = volume_of if own.ShapeType() == TopAbs_SOLID else area_of
+        assert measure(own) == pytest.approx(measure(other), rel=1e-9)
+    assert volume_of(ours[0][1]) == pytest.approx(sheet_volume(shape, 3.0, "outer"), rel=1e-12)
+
+
+def drill(shape):
+    return fixed(shape, SheetSettings(thickness=3.0))[1]
+
+
+def test_shapes_are_written_as_they_come_and_a_fault_on_the_way_leaves_nothing(tmp_path):
+    sizes = []
+
+    def solids():
+        for number in range(4):
+            yield str(number), build_skin(random_panel(number)), None
+            sizes.append(sum(file.stat().st_size for file in tmp_path.iterdir()))
+        raise PanelError("3", "there is none")
+
+    with pytest.raises(PanelError, match="there is none"):
+        write_step(tmp_path / "a.step", solids(), title="t")
+    assert 0 < sizes[1] < sizes[2] < sizes[3]
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("schema", ["AP242", "AP214"])

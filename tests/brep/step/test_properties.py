@@ -1,12 +1,13 @@
 """What is said of parts is written as receivers expect it: so many entities of each kind, no more, in their order."""
 
+import io
 from collections import Counter
 from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
 
 from cadpanel.brep.building.sheet import build_solid
-from cadpanel.brep.step.products import Header, step_file
+from cadpanel.brep.step.products import Header, write_step_text
 from cadpanel.brep.step.properties import ATTRIBUTES, PartData
 from tests.said import SAID
 from tests.shapes import random_panel
@@ -20,7 +21,10 @@ def entities(text):
 
 def written(data, schema="AP242", header=None):
     solid = build_solid(random_panel(1), 3.0)
-    return step_file([(f"P{i}", solid, None) for i in range(len(data))], "roof", schema, data=data, header=header)
+    file = io.StringIO()
+    shapes = [(f"P{i}", solid, None) for i in range(len(data))]
+    write_step_text(file, shapes, "roof", schema, data=data, header=header)
+    return file.getvalue()
 
 
 @pytest.mark.parametrize("schema", ["AP242", "AP214"])

@@ -1,5 +1,6 @@
 """The text of a STEP file: numbers and names that read back as they were, and instances that are shared."""
 
+import io
 import re
 
 import numpy as np
@@ -52,7 +53,8 @@ def test_references_are_listed_in_order_and_no_line_grows(count):
 
 
 def test_equal_points_share_an_instance_until_they_are_forgotten():
-    text = StepText()
+    file = io.StringIO()
+    text = StepText(file)
     first = text.shared("CARTESIAN_POINT", (1.0, 2.0, 3.0))
     assert text.shared("CARTESIAN_POINT", (1.0, 2.0, 3.0)) == first
     assert text.shared("DIRECTION", (1.0, 2.0, 3.0)) != first
@@ -60,5 +62,5 @@ def test_equal_points_share_an_instance_until_they_are_forgotten():
     text.forget()
     assert text.shared("CARTESIAN_POINT", (1.0, 2.0, 3.0)) == 4
     assert text.add("VECTOR('',#2,1.)") == 5
-    assert text.data().splitlines()[0] == "#1=CARTESIAN_POINT('',(1.0,2.0,3.0));"
-    assert text.data().endswith("#5=VECTOR('',#2,1.);\n")
+    assert file.getvalue().splitlines()[0] == "#1=CARTESIAN_POINT('',(1.0,2.0,3.0));"
+    assert file.getvalue().endswith("#5=VECTOR('',#2,1.);\n")

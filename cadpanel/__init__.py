@@ -19,6 +19,7 @@ from cadpanel.errors import (
     CadpanelError,
     DeliveryError,
     FitError,
+    LoftError,
     PanelError,
     ProofError,
     ReferenceFileError,
@@ -27,6 +28,7 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, unroll, write_step
+    from cadpanel.api_loft import deliver_loft, rails
     from cadpanel.api_result import FitResult
     from cadpanel.api_studies import fewest_panels, study
     from cadpanel.atomic.cone import fit_cone
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from cadpanel.geometry.patches import ConePatch, PlanePatch
     from cadpanel.geometry.shape import PanelShape, PolygonShape
     from cadpanel.geometry.unroll import FlatPattern
+    from cadpanel.lofting.loft import Loft, loft
+    from cadpanel.lofting.rail import Rail
     from cadpanel.reference.model import PanelReference, Reference, Seam
     from cadpanel.reference.settings import ReferenceSettings
 
@@ -63,6 +67,8 @@ __all__ = [
     "FitResult",
     "FitSettings",
     "FlatPattern",
+    "Loft",
+    "LoftError",
     "Measures",
     "PanelError",
     "PanelReference",
@@ -72,6 +78,7 @@ __all__ = [
     "PlanePatch",
     "PolygonShape",
     "ProofError",
+    "Rail",
     "Reference",
     "ReferenceFileError",
     "ReferenceSettings",
@@ -85,6 +92,7 @@ __all__ = [
     "build_solid",
     "compare",
     "deliver",
+    "deliver_loft",
     "diff",
     "fewest_panels",
     "fit",
@@ -92,6 +100,8 @@ __all__ = [
     "fit_cylinder",
     "fit_plane",
     "inspect",
+    "loft",
+    "rails",
     "read",
     "study",
     "to_build123d",
@@ -104,6 +114,7 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "unroll", "write_step"),
+        "api_loft": ("deliver_loft", "rails"),
         "api_result": ("FitResult",),
         "api_studies": ("fewest_panels", "study"),
         "brep.building.sheet": ("build_skin", "build_solid"),
@@ -123,6 +134,8 @@ if not TYPE_CHECKING:  # type checkers see the imports above, and so know what i
         "geometry.patches": ("ConePatch", "PlanePatch"),
         "geometry.shape": ("PanelShape", "PolygonShape"),
         "geometry.unroll": ("FlatPattern",),
+        "lofting.loft": ("Loft", "loft"),
+        "lofting.rail": ("Rail",),
         "reference.model": ("PanelReference", "Reference", "Seam"),
         "reference.settings": ("ReferenceSettings",),
     }

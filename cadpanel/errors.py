@@ -108,6 +108,10 @@ class FitError(CadpanelError, ValueError):
     """The samples given to an atomic fit are no numbers, too few, or do not determine a surface."""
 
 
+class LoftError(CadpanelError, ValueError):
+    """Two curves between which no surface can be spanned, or that are no rails."""
+
+
 class DeliveryError(CadpanelError, OSError):
     """A delivery folder cannot be written or read."""
 

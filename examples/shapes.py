@@ -1,4 +1,4 @@
-"""The surfaces that these pages cut and fit, drawn with cadquery: a canopy, a column, a roof with its network.
+"""The surfaces that these pages cut and fit, drawn with cadquery: a canopy, a column, a roof, two rails.
 
 python examples/shapes.py [FOLDER]
 
@@ -65,7 +65,17 @@ def roof() -> cq.Compound:
     return cq.Compound.makeCompound([face(over(x, y)), *edges])
 
 
-SHAPES = {"canopy": canopy, "column": column, "roof": roof}
+def rails() -> cq.Compound:
+    """Two curves of 6 m: an eave, level and round, and a ridge over it that rises; no cone goes through both."""
+    share = np.linspace(0.0, 1.0, 41)
+    turn = 1.6 * share
+    eave = np.stack([4_000.0 * np.cos(turn), 4_000.0 * np.sin(turn), 0.0 * turn], axis=-1)
+    ridge = np.stack([2_600.0 * np.cos(turn), 2_900.0 * np.sin(turn), 1_500.0 + 500.0 * share**2], axis=-1)
+    edges = [cq.Edge.makeSpline([cq.Vector(*point) for point in line.tolist()]) for line in (eave, ridge)]
+    return cq.Compound.makeCompound(edges)
+
+
+SHAPES = {"canopy": canopy, "column": column, "roof": roof, "rails": rails}
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else "build")

@@ -10,6 +10,7 @@ from cadpanel.delivery.records.report import PanelModel, SeamModel
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.shop_settings import ShopSettings
+from cadpanel.fitting.result import FitResult
 from cadpanel.geometry.panel import Panel
 from tests.delivered import fitted
 
@@ -25,8 +26,15 @@ def strip_records(
     shop: ShopSettings | None = None,
 ) -> tuple[tuple[PanelModel, ...], tuple[SeamModel, ...], tuple[FlatPart, ...]]:
     """What the report says of the small strip, and its parts."""
-    result, asked = fitted(), shop or ShopSettings()
-    built = build_panels(result.shapes, SHEET, result.reference.seams)
+    return records_of(fitted(), shop)
+
+
+def records_of(
+    result: FitResult, shop: ShopSettings | None = None
+) -> tuple[tuple[PanelModel, ...], tuple[SeamModel, ...], tuple[FlatPart, ...]]:
+    """The same of any fit."""
+    asked = shop or ShopSettings()
+    built = build_panels(result.shapes, SHEET, result.reference.seams, shop=shop)
     parts = flat_parts([panel.shape for panel in built.panels], SHEET, asked)
     records = with_flat_parts(panel_records(result, built), built.panels, parts, asked.density)
     return records, seam_records(result.reference, result.measures, built.joints), parts

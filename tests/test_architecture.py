@@ -31,6 +31,7 @@ PUBLIC = {
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch", "FlatPattern"),
     *("Feature", "Plane", "Cone", "Cylinder", "Blend"),
     *("fit_plane", "fit_cylinder", "fit_cone", "PlaneFit", "CylinderFit", "ConeFit"),
+    *("loft", "rails", "deliver_loft", "Loft", "Rail", "LoftError"),
     *("CadpanelError", "ReferenceFileError", "PanelError", "SettingsError", "FitError", "DeliveryError", "ProofError"),
 }
 
@@ -238,6 +239,10 @@ THROUGH_A_DOOR = {
         for name in ("checks", "colors", "commands", "fit_dialog", "init_gui", "qt")
     },
     "cadpanel.geometry.unroll_chains": "tests/geometry/test_unroll.py",
+    "cadpanel.api_loft": "tests/cli/test_loft.py",
+    "cadpanel.lofting.checks": "tests/lofting/test_loft.py",
+    "cadpanel.lofting.pieces": "tests/lofting/test_flat.py",
+    "cadpanel.lofting.settling": "tests/lofting/test_loft.py",
     "cadpanel.reference.alignment": "tests/reference/test_oriented_panel.py",
     "cadpanel.reference.inner_edges": "tests/reference/test_outline.py",
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",

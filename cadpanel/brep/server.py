@@ -11,6 +11,7 @@ from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
 
+from cadpanel.brep.curves.rails import FileCurves, load_curves
 from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
 from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
@@ -59,10 +60,22 @@ def survey(request: Request, go_on: GoOn) -> Survey:
     return measured(model, how)
 
 
+def rails(request: Request, go_on: GoOn) -> FileCurves:
+    """Read the loose curves of a file.
+
+    Raises:
+        CadpanelError: it is refused.
+    """
+    found = load_curves(request.path, cast(ReferenceSettings, request.argument))
+    go_on()
+    return found
+
+
 INSPECTOR = Inspector()
 WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "panels": panels,
     "survey": survey,
+    "rails": rails,
     "open": lambda request, _: INSPECTOR.open(request.path),
     "facts": lambda request, _: INSPECTOR.facts(request.path, cast(Sequence[int], request.argument)),
     "pack": lambda request, _: INSPECTOR.pack(request.path, cast(Sequence[int], request.argument)),

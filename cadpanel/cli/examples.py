@@ -15,6 +15,7 @@ EXAMPLES: dict[str, tuple[str, ...]] = {
     "verify": ("cadpanel verify build/kai_tak_nw --reference fixtures/kai_tak_nw.step",),
     "diff": ("cadpanel diff build/kai_tak_nw build/nw_joint",),
     "view": ("cadpanel view build/kai_tak_nw --png build/edge.png --color step --from outside",),
+    "loft": ("cadpanel loft build/rails.step 1 2 --out build/loft",),
     "features": ("cadpanel features",),
     "inspect": ("cadpanel inspect fixtures/kai_tak_nw.step",),
     "explain": ("cadpanel explain seam gap",),

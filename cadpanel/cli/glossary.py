@@ -200,4 +200,9 @@ GLOSSARY: tuple[Term, ...] = (
         meaning="How cadpanel fits: shapes and gaps of all panels in one optimization, so that what one panel gives "
         "way is made up for by its neighbours.",
     ),
+    Term(
+        name="annealing",
+        meaning="The paper's algorithm as it is printed: steepest descent on weighted squares of gaps and deviations "
+        "to a stationary point, then a random perturbation (--energy, --tau, --restarts, --seed).",
+    ),
 )

@@ -30,7 +30,7 @@ _SINGLE = {
     **dict.fromkeys(("unit", "faces", "seam_tolerance"), INPUT),
     **dict.fromkeys(("feature", "tilt", "blend"), SHAPE),
     **dict.fromkeys(("density", "stock", "facet_height", "k_factor", "material", "fixings", "returns"), SHEET),
-    **dict.fromkeys(("method", "restarts", "seed"), RUN),
+    **dict.fromkeys(("method", "restarts", "seed", "energy", "tau"), RUN),
     "schema": OUTPUT,
 }
 

@@ -24,6 +24,7 @@ from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
 from cadpanel.cli.init import init
 from cadpanel.cli.inspect import inspect
+from cadpanel.cli.loft import loft
 from cadpanel.cli.printable import complain, forgive_encodings
 from cadpanel.cli.run import run
 from cadpanel.cli.study import study
@@ -49,6 +50,7 @@ COMMANDS: tuple[Callable[..., None], ...] = (
     verify,
     diff,
     view,
+    loft,
     features,
     inspect,
     explain,

@@ -29,7 +29,7 @@ def study(
     reference: options.ReferenceFile,
     settings: Annotated[
         tuple[FitSettings, ...],
-        options.Without(("weights", "method", "rules")),
+        options.Without(("weights", "method", "rules", "energy", "tau")),
         options.Each({"feature": "--feature", "gap_tolerance": "--gap"}),
     ],
     how: Annotated[tuple[ReferenceSettings, ...], options.Each({"divide": "--divide"})],

@@ -43,7 +43,7 @@ _WORTH = {
 }
 # Seams that are named for what they cost: as many as make up so much of it, or no more than these.
 _MOST_OF_IT, _MOST_SEAMS = 0.5, 3
-_METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent"}
+_METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent", "annealing": "annealing"}
 
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str]], ...] = (
     ("Largest corner gap, mm", lambda s: length(s.max_corner_gap)),

@@ -16,13 +16,15 @@ STUDY, STUDY_TABLE = "study.json", "study.csv"
 JOB = "job.toml"
 """The job that a delivery was made by, where one did."""
 STUDY_PLOTS = ("study.png", "study.svg")
+LOFT, LOFT_STEP, LOFT_DXF, LOFT_PNG = LOFT_FILES = ("loft.json", "loft.step", "loft.dxf", "loft.png")
 
-MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY)
+MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY, LOFT)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""
 OWN_FILES = frozenset(
     {
         *(REPORT, COMPARISON, STUDY, STUDY_TABLE, MANIFEST, JOB),
         *STUDY_PLOTS,
+        *LOFT_FILES,
         *(name for output in OUTPUTS for name in output.files),
     }
 )

@@ -42,7 +42,8 @@ class PanelSheet:
         area: of the skin, mm^2.
         volume: of the sheet, mm^3.
         fixings: its holes; None where none are asked for. The skin has none.
-        returns: its sides that are folded; their cylinders and planes are patches of `shape`, not of `fitted`.
+        returns: its edges that are folded; their cylinders and planes are patches of `shape`, not of `fitted`.
+        tray: where it is a flat panel that is folded, the length and the inner radius of its returns, mm.
         moved: how far the farthest corner of `fitted` lies from where the fit had it, mm.
         notes: what the fabricator should know, one sentence each.
     """
@@ -58,6 +59,7 @@ class PanelSheet:
     volume: float
     fixings: PanelFixings | None
     returns: tuple[str, ...]
+    tray: tuple[float, float] | None
     moved: float
     notes: tuple[str, ...]
 
@@ -104,8 +106,7 @@ def build_panels(
     try:
         depth = sheet_depth(sheet.thickness, sheet.skin_side)
         jointed = cut_to_seams(fitted, edges, sheet.joint, depth)
-        meeting = _meeting_edges(len(shapes), edges)
-        panels = _build_all(straight, jointed, meeting, (sheet, shop or ShopSettings()), tell)
+        panels = _build_all(straight, jointed, (sheet, shop or ShopSettings()), tell)
     except PanelError:
         narrow = widest_joint(fitted, edges, sheet.joint, sheet.thickness, sheet.skin_side, square=square)
         if narrow is None:
@@ -134,25 +135,15 @@ def say_nothing(_step: str, _done: int, _of: int) -> None:
     """The progress of those who did not ask for it."""
 
 
-def _meeting_edges(count: int, seams: Sequence[SeamEdges]) -> list[set[str]]:
-    """Of each panel the edges at which it meets another one."""
-    found: list[set[str]] = [set() for _ in range(count)]
-    for seam in seams:
-        for panel, edge in zip(seam.panels, seam.edges, strict=True):
-            found[panel].add(edge)
-    return found
-
-
 def _build_all(
     straight: Sequence[Straightened[Panel]],
     jointed: Jointed,
-    meeting: Sequence[set[str]],
     asked: tuple[SheetSettings, ShopSettings],
     tell: Progress,
 ) -> tuple[PanelSheet, ...]:
     built: list[PanelSheet] = []
-    for one, shape, edges in zip(straight, jointed.shapes, meeting, strict=True):
-        built.append(_build(one, returned(shape, edges, *asked), *asked))
+    for one, shape in zip(straight, jointed.shapes, strict=True):
+        built.append(_build(one, returned(shape, *asked), *asked))
         tell("build", len(built), len(straight))
     return tuple(built)
 
@@ -179,7 +170,8 @@ def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, s
         area=shape.area(),
         volume=volume,
         fixings=fixings,
-        returns=cut.sides,
+        returns=cut.edges,
+        tray=cut.tray,
         moved=straight.largest_move,
         notes=(*notes, *cut.notes),
     )

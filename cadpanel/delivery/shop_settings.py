@@ -49,7 +49,7 @@ class ShopSettings:
         material: what the sheet is made of, as files and drawings name it; empty to name nothing.
         author, organization: who files are from; empty to name nobody.
         fixings: fixing holes along edges: their diameter, largest pitch, and distance from the edge, mm; None for none.
-        returns: legs folded inwards along flat sides that meet nobody: their length on the outer face, and the inner
+        returns: legs folded inwards along straight edges of flat parts: their length on the outer face, and the inner
             radius of the fold, mm; None for none.
     """
 
@@ -160,7 +160,7 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: returns_of(text),
             metavar="MM@RADIUS",
-            help="Fold flat sides that meet nobody inwards: length on the outer face, and inner radius.",
+            help="Fold straight edges of flat parts inwards: length on the outer face, and inner radius.",
         ),
     )
 

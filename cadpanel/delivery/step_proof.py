@@ -23,9 +23,10 @@ from cadpanel.delivery.records.certified import CertificateModel, ClearModel
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel, SeamModel
-from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
+from cadpanel.delivery.records.to_shape import recorded_shape, tray_of, unfolded_rulings
 from cadpanel.geometry.rewalk import rewalked
 from cadpanel.geometry.sheet_checks import sheet_depth
+from cadpanel.geometry.trays import TrayShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,25 +55,27 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     """
     depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
     moved = {panel.name: panel.moved for panel in contents.records}
+    trays = [tray_of(panel, depth) for panel in contents.records]
     expected = [
         ExpectedPanel(
             name=panel.name,
             volume=panel.volume,
-            kinds=tuple(patch.kind for patch in panel.patches),
+            kinds=tuple(patch.kind for patch in (panel.patches if tray is None else tray.patches)),
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
             fitted=_fitted(panel),
-            flat=_expected_flat(part, depth),
+            flat=_expected_flat(part, depth, tray),
             said=said,
             said_of_skin=said_of_skin,
             placed=contents.placed,
             square=contents.sheet.ends == "square",
             holes=_expected_holes(part, depth),
             folded=_folded(panel),
+            tray=tray,
             sheet=_sheet(panel, part, contents),
         )
-        for panel, part, said, said_of_skin in zip(
-            contents.records, contents.parts, solid_data(contents), skin_data(contents), strict=True
+        for panel, part, said, said_of_skin, tray in zip(
+            contents.records, contents.parts, solid_data(contents), skin_data(contents), trays, strict=True
         )
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
@@ -115,9 +118,10 @@ def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
         yield from frame_faults(folder / file, f"{contents.title} {what}", parts, contents.sheet.schema)
 
 
-def _expected_flat(part: FlatPart, depth: float) -> ExpectedFlat:
+def _expected_flat(part: FlatPart, depth: float, tray: TrayShape | None) -> ExpectedFlat:
     holes = 0.0 if part.fixings is None else part.fixings.area
-    return ExpectedFlat(area=part.size.area - holes, share=part.share, depth=depth, skin_pieces=part.skin_pieces)
+    area, pieces = part.size.area - holes, part.skin_pieces
+    return ExpectedFlat(area=area, share=part.share, depth=depth, skin_pieces=pieces, tray=tray)
 
 
 def _expected_holes(part: FlatPart, depth: float) -> ExpectedHoles | None:

@@ -33,6 +33,11 @@ CHEAPEST_FIRST = (
 """What a shop makes with less work comes first: flat sheet, one roll, one tapered roll, folds, double folds."""
 
 
+# Neighbours of different features are held together from here within a few steps or not at all, so the fits alone are
+# brought to rest more closely than for others: see `fitting.methods.local`.
+_SETTLED = 1e-5
+
+
 class Choice:
     """Which feature each panel has, and what it might have instead.
 
@@ -131,7 +136,7 @@ class Choice:
             # No start was found for one of them, which the next feature may suit better.
             self._try(place, np.array([i for i in suited if self._reference.panels[i].name != error.panel]))
             return
-        found = Local().fit(problem, starts, self._settings)
+        found = Local(settled=_SETTLED).fit(problem, starts, self._settings)
         for i, row, feature in zip(suited, found.unknowns, problem.layout.feature_of, strict=True):
             self._alone[i, place] = row[: len(feature.free)]
         self.deviations[suited, place] = largest_deviations(panel_shapes(problem, found.unknowns), part)

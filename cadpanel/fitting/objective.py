@@ -37,7 +37,10 @@ class Objective:
 
     def cost(self, unknowns: Array) -> Array:
         """See `solver.Model.cost`."""
-        state = self.problem.state(unknowns)
+        return self.cost_at(self.problem.state(unknowns))
+
+    def cost_at(self, state: State) -> Array:
+        """The same at a state."""
         cost = np.zeros(self.problem.panels)
         for term in self.terms:
             cost += term.cost(state)
@@ -103,6 +106,11 @@ class HeldObjective:
         cost, normal = self._free.linearize_at(state)
         linear = [term.linear(state) for term in self.held]
         return Point(unknowns, cost, normal, tuple(v for v, _ in linear), tuple(j for _, j in linear))
+
+    def cost(self, unknowns: Array) -> tuple[Array, tuple[Array, ...]]:
+        """See `solver.HeldModel.cost`."""
+        state = self.problem.state(unknowns)
+        return self._free.cost_at(state), tuple(term.vectors(state) for term in self.held)
 
     def vectors(self, unknowns: Array) -> tuple[Array, ...]:
         """See `solver.HeldModel.vectors`."""

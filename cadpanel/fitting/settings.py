@@ -32,7 +32,7 @@ SMALLEST_WEIGHT, LARGEST_WEIGHT = 1e-12, 1e12
 WIDTH, STEP, SHIFT = 3.0, 3.0, 3.0
 """mm that the parts of gaps may have if nothing is said of gaps."""
 
-Method = Literal["local", "two_stage", "concurrent"]
+Method = Literal["local", "two_stage", "concurrent", "annealing"]
 
 OF_GAPS = ("gap_tolerance", "joint_tolerance", "step", "shift")
 """The settings that hold gaps, whose place weights take."""
@@ -108,7 +108,7 @@ class FitSettings:
         max_deviation: mm that no panel may deviate from its reference: by it features are chosen automatically; of a
             feature that is named it is judged whether it keeps to it.
         tilt: "free" lets cut planes tilt into a mitre, "fixed" holds them upright as the paper does.
-        method: "local", "two_stage" or "concurrent".
+        method: "local", "two_stage", "concurrent", or "annealing", the paper's algorithm as it is printed.
         gap_tolerance: mm that no gap may exceed, at corners and along whole seams; None where its parts alone are held.
         joint_tolerance: mm that neighbours may lie apart, or over each other, square to the seam in the skin.
         step: mm from skin to skin along their normal.
@@ -128,6 +128,10 @@ class FitSettings:
         rules: for single panels and seams, see `fitting.rules`; the name of a TOML file, or what it would hold.
         restarts: further starts from perturbed local fits; the best result counts.
         seed: of the perturbations.
+        energy: the paper's E0: the weighted sum of squares, mm2, of panels that seams connect, below which annealing
+            ends; None to use up all restarts.
+        tau: the paper's convergence tolerance: the step, mm, below which annealing is at a stationary point; angles
+            count by a panel's length.
     """
 
     feature: str | PanelFeature = setting(
@@ -144,7 +148,10 @@ class FitSettings:
     tilt: Tilt = setting(
         "free", option=Option(help="May the planes that cut the ends tilt into a mitre, or stand upright?")
     )
-    method: Method = setting("concurrent", option=Option(help="Each panel alone; then moved about; or all at once."))
+    method: Method = setting(
+        "concurrent",
+        option=Option(help="Each panel alone; then moved about; all at once; or as the paper prints it."),
+    )
     gap_tolerance: float | None = setting(
         None,
         within=Range(what="gap tolerance", least=1e-3, unit=" mm", empty=True),
@@ -196,6 +203,16 @@ class FitSettings:
         0,
         within=Range(what="seed", least=0, whole=True),
         option=Option(help="Of the random numbers that shake them."),
+    )
+    energy: float | None = setting(
+        None,
+        within=Range(what="acceptable energy", least=0.0, unit=" mm2", empty=True),
+        option=Option(metavar="MM2", help="Weighted sum of squares, E0, at which --method annealing ends.", told=False),
+    )
+    tau: float = setting(
+        1e-3,
+        within=Range(what="convergence tolerance", least=1e-12, most=1e3, unit=" mm"),
+        option=Option(metavar="MM", help="Step below which --method annealing is at a stationary point."),
     )
 
     def __post_init__(self) -> None:
@@ -327,3 +344,5 @@ class FitKeywords(TypedDict, total=False):
     rules: str | Path | Mapping[str, Any] | Rules | None
     restarts: int
     seed: int
+    energy: float | None
+    tau: float

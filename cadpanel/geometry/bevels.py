@@ -20,10 +20,10 @@ def edge_bevels(shape: Panel, other: Panel) -> dict[str, tuple[float, float]]:
         shape: the sheet's skin, with the normals.
         other: its other face.
     """
-    ends = {f"end {end}": tuple(bevels) for end, bevels in enumerate(end_bevels(shape).tolist())}
     straight = ["side 0", "side 1"] if shape.four_sided else [f"edge {i}" for i in range(shape.corners().shape[1])]
     if shape.square:
-        return dict.fromkeys([*ends, *straight], (0.0, 0.0))
+        return dict.fromkeys([*(["end 0", "end 1"] if shape.four_sided else []), *straight], (0.0, 0.0))
+    ends = {f"end {end}": tuple(bevels) for end, bevels in enumerate(end_bevels(shape).tolist())}
     return {**ends, **{edge: 2 * (_straight_bevel(shape, other, edge),) for edge in straight}}
 
 

@@ -8,11 +8,11 @@ without a kink (biarcs), so that the largest error falls with the cube of their 
 from __future__ import annotations
 
 import math
+from typing import Protocol, Self
 
 import numpy as np
 
-from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.flat_curves import FlatCurves
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.geometry.vectors import side_of, unit
 
 # Places at which a stretch is held against its two arcs.
@@ -29,7 +29,35 @@ _LEAST_BOW, _LEAST_CURVATURE = 1e-6, 3e-10
 _MOST_MORE = 4.0
 
 
-def arc_chains(curves: FlatCurves, chord: float) -> list[Array]:
+class Followed(Protocol):
+    """c curves in the plane, each followed by u from 0 to 1."""
+
+    @property
+    def start(self) -> Array:
+        """(c, 2) where they begin, mm."""
+        ...
+
+    @property
+    def curved(self) -> BoolArray:
+        """(c,) which of them are no segments."""
+        ...
+
+    def __len__(self) -> int: ...
+
+    def take(self, rows: IntArray) -> Self:
+        """Some of them, perhaps one several times."""
+        ...
+
+    def points(self, u: Array) -> Array:
+        """(c, q, 2) points at parameters (c, q)."""
+        ...
+
+    def velocities(self, u: Array) -> Array:
+        """(c, q, 2) derivatives of `points`."""
+        ...
+
+
+def arc_chains(curves: Followed, chord: float) -> list[Array]:
     """Every curve as a chain of arcs within `chord` mm of it: (v, 3) the start of each arc, and its bulge.
 
     The chain's end is the curve's; it is not among them.
@@ -50,14 +78,14 @@ def arc_chains(curves: FlatCurves, chord: float) -> list[Array]:
         stretches[rough] = np.ceil(stretches[rough] * more).astype(np.intp)
 
 
-def _chains(curves: FlatCurves, vertices: Array, stretches: IntArray, straight: Array) -> list[Array]:
+def _chains(curves: Followed, vertices: Array, stretches: IntArray, straight: Array) -> list[Array]:
     own = np.split(vertices, np.cumsum(stretches)[:-1])
     return [
         np.array([[*curves.start[row], 0.0]]) if straight[row] else arcs.reshape(-1, 3) for row, arcs in enumerate(own)
     ]
 
 
-def _biarcs(curves: FlatCurves, first: Array, share: Array) -> tuple[Array, Array, Array]:
+def _biarcs(curves: Followed, first: Array, share: Array) -> tuple[Array, Array, Array]:
     """Two arcs over the stretch of each curve that begins at `first` (c,) and goes on for `share` (c,) of it.
 
     Returns:

@@ -18,6 +18,7 @@ from cadpanel.geometry.flat_places import FlatPlace
 from cadpanel.geometry.limits import LEAST_PITCH
 from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.geometry.unroll import FlatPattern
+from cadpanel.geometry.unroll_trays import of_corner
 
 TOO_NEAR = 0.05
 """By how much a hole may come nearer to what it keeps away from, mm: curves are measured by their chords."""
@@ -98,6 +99,8 @@ def fixings(pattern: FlatPattern, rule: FixingRule) -> Fixings:
     holes: list[Fixing] = []
     short: dict[str, None] = {}
     for row, places in enumerate(_rows(pattern, rule)):
+        if of_corner(pattern.edges[row]):
+            continue
         clear = [place for place in places if _room(pattern, rule, row, place, holes)]
         holes += [Fixing(edge=pattern.edges[row], patch=pattern.owners[row], place=place) for place in clear]
         if not len(places) or len(clear) < len(places):

@@ -19,7 +19,9 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.unroll import FlatPattern
+from cadpanel.geometry.unroll_trays import flat_tray
 from cadpanel.geometry.vectors import cross
 
 
@@ -97,6 +99,8 @@ class FlatPlace:
 
 def flat_places(shape: Panel, pattern: FlatPattern, offset: float) -> tuple[FlatPlace, ...]:
     """The patches of a panel, of which the surface at `offset` mm along the skin's normals was unrolled."""
+    if isinstance(shape, TrayShape):
+        return _tray_places(shape, offset)
     points, directions, normals = shape.rulings()
     if not shape.four_sided:
         # Polygons lie with their first edge, which is that of their one ruling, along x.
@@ -109,6 +113,20 @@ def flat_places(shape: Panel, pattern: FlatPattern, offset: float) -> tuple[Flat
         frame = axis_frame(*ruling, patch) if isinstance(patch, ConePatch) else None
         found.append(_place((pattern.curves.origin[row], pattern.curves.along[row]), ruling, frame, offset))
     return tuple(found)
+
+
+def _tray_places(shape: TrayShape, offset: float) -> tuple[FlatPlace, ...]:
+    """The flat part from its first corner; of each fold the cylinder and the leg, from the lines where they begin."""
+    plan, flat = shape.plan, flat_tray(shape.offset(offset))
+    rulings = [(plan.corners[0], cross(plan.normal, plan.along[0]), plan.normal)]
+    for edge in np.flatnonzero(plan.folded).tolist():
+        along, away = plan.along[edge], plan.away[edge]
+        bent = plan.starts[edge] + shape.radius * (away - plan.normal)
+        rulings += [(plan.starts[edge], along, plan.normal), (bent, along, away)]
+    return tuple(
+        _place(plane, ruling, axis_frame(*ruling, patch) if isinstance(patch, ConePatch) else None, offset)
+        for plane, ruling, patch in zip(zip(flat.origins, flat.ways, strict=True), rulings, shape.patches, strict=True)
+    )
 
 
 def _place(

@@ -10,6 +10,7 @@ import numpy as np
 from cadpanel.geometry.flat_curves import joined
 from cadpanel.geometry.smallest_rectangle import Rectangle, smallest_rectangle
 from cadpanel.geometry.unroll import FlatPattern
+from cadpanel.geometry.unroll_trays import of_corner
 
 # Points on each curved piece; between two of them it bulges by less than 0.01 mm.
 _POINTS = 64
@@ -22,7 +23,7 @@ class FlatSize:
     Attributes:
         area: inside its outline, mm2, to rounding error.
         pieces: the length of each piece of the outline, mm, to rounding error.
-        edges: the length of each edge, in the order of the outline, mm.
+        edges: the length of each edge, in the order of the outline, mm; what belongs to reliefs is left out.
         blank: the smallest rectangle about it, to 0.01 mm.
     """
 
@@ -51,7 +52,8 @@ def flat_sizes(patterns: Sequence[FlatPattern]) -> list[FlatSize]:
 
 
 def _by_edge(edges: Sequence[str], lengths: Sequence[float]) -> dict[str, float]:
-    found = dict.fromkeys(edges, 0.0)
+    found = dict.fromkeys((edge for edge in edges if not of_corner(edge)), 0.0)
     for edge, length in zip(edges, lengths, strict=True):
-        found[edge] += length
+        if edge in found:
+            found[edge] += length
     return found

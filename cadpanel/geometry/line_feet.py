@@ -7,6 +7,9 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.geometry.vectors import norm
 
+# Points and segments looked at together: what is needed on the way stays in the processor's cache.
+_TOGETHER = 4096
+
 
 def line_feet(points: Array, lines: Array) -> tuple[Array, Array]:
     """The points of lines nearest to points, pair by pair.
@@ -19,6 +22,17 @@ def line_feet(points: Array, lines: Array) -> tuple[Array, Array]:
         the feet (m, q, 3), and the unit vectors (m, q, 3) along the line there: zero where a corner of the line is the
         foot, which then does not move with the point.
     """
+    each = max(1, _TOGETHER // max(1, points.shape[1] * lines.shape[1]))
+    if len(points) <= each:
+        return _feet(points, lines)
+    found, ways = np.empty_like(points), np.empty_like(points)
+    for first in range(0, len(points), each):
+        part = slice(first, first + each)
+        found[part], ways[part] = _feet(points[part], lines[part])
+    return found, ways
+
+
+def _feet(points: Array, lines: Array) -> tuple[Array, Array]:
     start, step = lines[:, None, :-1], (lines[:, 1:] - lines[:, :-1])[:, None]
     square = np.einsum("mqrx,mqrx->mqr", step, step)
     away = points[:, :, None] - start

@@ -2,8 +2,8 @@
 
 A return is two more patches of the chain, a cylinder and a plane, so that all that is known of chains is known of it,
 too. The outer face of its leg lies where the wall of the side stood, and turns away from the sheet as that leaned.
-Sides of round patches have none: no edge of a rolled zone is folded straight by a brake. Nor have ends, whose edges
-bend with the sheet.
+Sides of round patches have none: no edge of a rolled zone is folded straight by a brake. Nor have ends that bend with
+the sheet. Panels that are flat are folded all round, as `trays` says.
 """
 
 from __future__ import annotations
@@ -83,19 +83,29 @@ def tangent_length(rule: ReturnRule, thickness: float, angle: float) -> float:
     return (rule.inner_radius + thickness) * math.tan(0.5 * angle)
 
 
+def leg_behind(name: str, edge: str, rule: ReturnRule, thickness: float, reach: float) -> float:
+    """What is left of a leg behind a fold that reaches so far, mm.
+
+    Raises:
+        PanelError: less than the sheet is thick.
+    """
+    leg = rule.length - reach
+    if leg < thickness:
+        raise PanelError(
+            name,
+            f"a return of {rule.length:g} mm leaves {max(leg, 0.0):.3g} mm behind its fold at {edge}; ask for "
+            f"one of at least {math.ceil(reach + thickness)} mm, or for a smaller radius.",
+        )
+    return leg
+
+
 def _fold(shape: Chain, place: int, rule: ReturnRule, thickness: float, skin_side: SkinSide) -> _Fold:
     outward = 1.0 if place else -1.0
     binormal = shape.binormals()[-place]
     lean = float(shape.side_leans[place])
     angle = 0.5 * math.pi + math.atan(outward * lean)
     reach = tangent_length(rule, thickness, angle)
-    leg = rule.length - reach
-    if leg < thickness:
-        raise PanelError(
-            shape.name,
-            f"a return of {rule.length:g} mm leaves {max(leg, 0.0):.3g} mm behind its fold at side {place}; ask for "
-            f"one of at least {math.ceil(reach + thickness)} mm, or for a smaller radius.",
-        )
+    leg = leg_behind(shape.name, f"side {place}", rule, thickness, reach)
     # The outer face is that of the skin, or the other one; both have the fold's beginning at the same ruling.
     out = 0.0 if skin_side == "outer" else thickness
     begins = shape.points[-place] + (out * lean - outward * reach) * binormal

@@ -38,3 +38,8 @@ def other_face(shape: Shape, thickness: float, skin_side: SkinSide) -> Shape:
 def sheet_depth(thickness: float, skin_side: SkinSide) -> float:
     """Where the far face of the sheet lies, mm along the skin's normal."""
     return -thickness if skin_side == "outer" else thickness
+
+
+def skin_side_of(depth: float) -> SkinSide:
+    """On which side of the sheet the skin is, of which the other face lies at a depth, mm along the normal."""
+    return "outer" if depth < 0.0 else "inner"

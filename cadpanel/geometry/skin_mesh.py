@@ -12,6 +12,7 @@ from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.vectors import cross, side_of, unit
 
 ALONG, ACROSS = 8, 4
@@ -40,6 +41,8 @@ class SkinMesh:
 
 def skin_mesh(shape: Panel) -> SkinMesh:
     """The mesh of a panel's skin; two panels with like patches and sweeps have the same triangles."""
+    if isinstance(shape, TrayShape):
+        return _tray_mesh(shape)
     _, cut_normals = shape.cuts()
     return _grid_mesh(shape) if len(cut_normals) else _polygon_mesh(shape)
 
@@ -95,6 +98,62 @@ def _polygon_mesh(shape: Panel) -> SkinMesh:
         triangles=triangles,
         chart=chart,
         ways=np.broadcast_to(axes, (len(chart), 2, 3)),
+    )
+
+
+def _tray_mesh(shape: TrayShape) -> SkinMesh:
+    """Of a folded flat panel: its flat part inside of its reliefs, and rows over each fold and its leg."""
+    plan = shape.plan
+    origin = plan.corners[0] + shape.lift * plan.normal
+    axes = np.stack([plan.along[0], cross(plan.normal, plan.along[0])])
+    flat = (_round_reliefs(shape) - origin) @ axes.T
+    chart, triangles = _halved(flat, _ears(flat))
+    meshes = [
+        SkinMesh(points=origin + chart @ axes, triangles=triangles, chart=chart, ways=np.tile(axes, (len(chart), 1, 1)))
+    ]
+    meshes += [_fold_mesh(shape, edge, axes) for edge in np.flatnonzero(plan.folded).tolist()]
+    starts = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
+    return SkinMesh(
+        points=np.concatenate([mesh.points for mesh in meshes]),
+        triangles=np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]),
+        chart=np.concatenate([mesh.chart for mesh in meshes]),
+        ways=np.concatenate([mesh.ways for mesh in meshes]),
+    )
+
+
+def _round_reliefs(shape: TrayShape) -> Array:
+    """(q, 3) round its flat part."""
+    plan = shape.plan
+    back, inwards = -np.roll(plan.along, 1, axis=0), -np.roll(plan.outward, 1, axis=0)
+    turns = plan.openings[:, None] * np.linspace(0.0, 1.0, ACROSS + 1)
+    ways = np.cos(turns)[..., None] * back[:, None] + np.sin(turns)[..., None] * inwards[:, None]
+    points = plan.corners[:, None] + plan.reliefs[:, None, None] * ways + shape.lift * plan.normal
+    return np.concatenate(
+        [own if round_one else own[:1] for own, round_one in zip(points, (plan.reliefs > 0.0).tolist(), strict=True)]
+    )
+
+
+def _fold_mesh(shape: TrayShape, edge: int, axes: Array) -> SkinMesh:
+    """Rows along a fold and down its leg."""
+    plan, long = shape.plan, float(shape.plan.lengths[edge])
+    along, out, normal, angle = plan.along[edge], plan.outward[edge], plan.normal, float(plan.angles[edge])
+    turns = np.concatenate([np.linspace(0.0, angle, ACROSS + 1), np.full(ACROSS, angle)])[:, None]
+    down = np.concatenate([np.zeros(ACROSS + 1), np.linspace(0.0, float(plan.legs[edge]), ACROSS + 1)[1:]])[:, None]
+    onwards = np.cos(turns) * out - np.sin(turns) * normal
+    bent = shape.radius * (np.sin(turns) * out + np.cos(turns) * normal) - plan.radius * normal
+    rows = plan.starts[edge] + bent + down * onwards
+    steps = np.linspace(0.0, long, ALONG + 1)[:, None]
+    points = rows[:, None] + steps * along
+    begin = (plan.starts[edge] - plan.corners[0]) @ axes.T
+    chart = begin + ((shape.radius * turns + down) * (axes @ out))[:, None] + steps * (axes @ along)
+    ways = (axes @ along)[:, None] * along + (axes @ out)[:, None] * onwards[:, None]
+    corner = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
+    here, right, under, far = corner[:-1, :-1], corner[:-1, 1:], corner[1:, :-1], corner[1:, 1:]
+    return SkinMesh(
+        points=points.reshape(-1, 3),
+        triangles=np.stack([here, far, right, here, under, far], axis=-1).reshape(-1, 3),
+        chart=chart.reshape(-1, 2),
+        ways=np.repeat(ways, len(steps), axis=0),
     )
 
 

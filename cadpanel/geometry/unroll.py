@@ -21,7 +21,9 @@ from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.unroll_chains import unroll_chain_arrays
+from cadpanel.geometry.unroll_trays import flat_tray
 from cadpanel.geometry.vectors import cross, unit
 
 
@@ -48,7 +50,8 @@ class FlatPattern:
         name: the panel's.
         feature: name of its shape feature.
         curves: c pieces of the outline, counterclockwise from the corner of side 0 and end 0.
-        edges: (c) the edge that each belongs to: "end 0", "side 1", ...; of a polygon "edge 0", "edge 1", ...
+        edges: (c) the edge that each belongs to: "end 0", "side 1", ...; of a polygon "edge 0", "edge 1", ...; or
+            "corner 0" and so on, what belongs to a relief.
         owners: (c) the patch that each belongs to.
         tangents: (k - 1, 2, 2) the rulings between patches, from end 0 to end 1.
         bends: the curved patches in the order of the walk.
@@ -180,5 +183,26 @@ def _pattern(shape: PanelShape, corners: Array, ends: Sequence[FlatCurves]) -> F
     )
 
 
+def unroll_trays(shapes: Sequence[TrayShape]) -> list[FlatPattern]:
+    """Folded flat panels with their first edge along x."""
+    found = []
+    for shape in shapes:
+        flat = flat_tray(shape)
+        bends = tuple(FlatBend(patch=patch, at_ends=at_ends, sweep=sweep) for patch, at_ends, sweep in flat.bends)
+        found.append(
+            FlatPattern(
+                name=shape.name,
+                feature=shape.feature,
+                curves=flat.outline(),
+                edges=tuple(flat.edges),
+                owners=tuple(flat.owners),
+                tangents=np.array(flat.tangents).reshape(-1, 2, 2),
+                bends=bends,
+            )
+        )
+    return found
+
+
 unroller.register(PolygonShape, lambda _: unroll_polygons)
 unroller.register(PanelShape, lambda _: unroll_chains)
+unroller.register(TrayShape, lambda _: unroll_trays)

@@ -9,6 +9,7 @@ are eliminated: one matrix with the blocks of the problem is factorized a step.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +17,7 @@ import numpy as np
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.central_path import central_weight, penalty
-from cadpanel.solver.hold import HeldVectors
-from cadpanel.solver.scatter import scatter_add
+from cadpanel.solver.held_rows import HeldRows, Rowed
 
 # Multipliers stay within this factor of those on the central path.
 _BAND = 10.0
@@ -26,22 +26,24 @@ _LEAST_LEFT = 0.05
 _NEARLY_NONE = 1e-300
 
 Each = Array | float
-"""A number for each group, (groups, 1), or one for all."""
+"""A number for each vector, (vectors,), or one for all."""
+Jacobians = Sequence[tuple[Array, ...]]
+"""For each batch, for each of its blocks (groups, vectors, d, size)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What a step's normal equations were made of, for a batch.
+    """What a step's normal equations were made of.
 
     Attributes:
-        weight: (groups, vectors) multipliers that the step was found with.
-        stiffness: (groups, vectors) D.
-        shift: (groups, vectors) by how much multipliers change without a step.
-        u: (groups, vectors, d) vectors by their distances.
-        roots: (groups, vectors) roots across u, and what (.., along u) adds to them: residuals of a change e of u are
+        weight: (vectors,) multipliers that the step was found with.
+        stiffness: (vectors,) D.
+        shift: (vectors,) by how much multipliers change without a step.
+        u: (rows,) vectors by their distances.
+        roots: (vectors,) roots across u, and what (.., along u) adds to them: residuals of a change e of u are
             roots e + along (u . e) u.
         along: see `roots`.
-        rows: for each block (groups, vectors d, size) the residuals' derivatives.
+        residuals: for each batch, for each of its blocks (groups, vectors d, size) the residuals' derivatives.
     """
 
     weight: Array
@@ -50,185 +52,196 @@ class Work:
     u: Array
     roots: Array
     along: Array
-    rows: tuple[Array, ...]
+    residuals: tuple[tuple[Array, ...], ...]
 
 
-class Barrier:
-    """A batch of held vectors and their multipliers.
+class Barriers:
+    """All held vectors and their multipliers.
 
     Attributes:
         held: whose they are.
-        tau: (groups, vectors) the distances that count now, never below those that are asked for, and never rising.
-        weight: (groups, vectors) multipliers w of |v|^2 / tau^2.
-        most: (groups, vectors) the greatest that a multiplier may be.
+        goal: (vectors,) the distances that are asked for.
+        tau: (vectors,) the distances that count now, never below those that are asked for, and never rising.
+        weight: (vectors,) multipliers w of |v|^2 / tau^2.
+        most: (vectors,) the greatest that a multiplier may be.
     """
 
-    def __init__(self, held: HeldVectors, *, most: Each, ease: Each) -> None:
-        """Hold a batch.
+    def __init__(self, held: HeldRows, *, most: Each, ease: Each) -> None:
+        """Hold vectors.
 
         Args:
-            held: whose vectors they are.
+            held: which.
             most: the greatest multiplier.
             ease: distances that may give way are so many times as wide.
         """
         self.held = held
-        hold = held.hold
-        self.goal = hold.radius * ease if hold.gives_way else hold.radius
-        self.tau = self.goal if hold.scale is None else hold.scale
-        self.most = np.broadcast_to(most, hold.radius.shape).astype(np.float64)
+        holds = [one.hold for one in held.held]
+        self._radius = held.told([hold.radius for hold in holds])
+        self._own = held.weights()
+        self._ties = held.told([np.full(hold.radius.shape, hold.ties) for hold in holds])
+        self.goal = np.where(held.gives_way, self._radius * ease, self._radius)
+        scales = [np.full(hold.radius.shape, np.nan) if hold.scale is None else hold.scale for hold in holds]
+        scale = held.told(scales)
+        self.tau = np.where(np.isnan(scale), self.goal, scale)
+        self.most = np.broadcast_to(most, self.goal.shape).astype(np.float64)
         self.weight = 0.5 * self.most
 
-    def open(self, vectors: Array, widest: Each, lag: Each, mu: Each) -> None:
-        """Begin with distances that hold vectors (groups, vectors, d) nearly, see `follow`, and central multipliers."""
-        if not self.held.hold.one_sided:
-            self.tau = np.maximum(self._goal(widest), lag * np.linalg.norm(vectors, axis=-1))
-        self.weight = central_weight(self.numbers(vectors), mu, self.most)
+    def open(self, at: Rowed, widest: Each, lag: Each, mu: Each) -> None:
+        """Begin with distances that hold the vectors nearly, see `follow`, and central multipliers."""
+        near = np.maximum(self._goal(widest), lag * np.sqrt(at.squares))
+        self.tau = np.where(self.held.one_sided, self.tau, near)
+        self.weight = central_weight(self.numbers(at), mu, self.most)
 
-    def follow(self, vectors: Array, widest: Each, lag: Each, where: BoolArray) -> None:
+    def follow(self, at: Rowed, widest: Each, lag: Each, where: BoolArray) -> None:
         """Narrow the distances; multipliers change such that the pull on the vectors stays as it is.
 
         Args:
-            vectors: (groups, vectors, d).
+            at: the vectors.
             widest: to which distances that may give way are narrowed now, in the unit of the vectors.
             lag: no distance becomes less than this share of what its vector is now.
-            where: (groups, 1) which groups; all others stay as they are.
+            where: (vectors,) which ones; all others stay as they are, and so do numbers.
         """
-        if self.held.hold.one_sided:
-            return
         goal = self._goal(widest)
-        tau = np.minimum(np.maximum(self.tau, goal), np.maximum(goal, lag * np.linalg.norm(vectors, axis=-1)))
-        tau = np.where(where, tau, self.tau)
+        tau = np.minimum(np.maximum(self.tau, goal), np.maximum(goal, lag * np.sqrt(at.squares)))
+        tau = np.where(where & ~self.held.one_sided, tau, self.tau)
         self.weight = self.weight * tau / self.tau
         self.tau = tau
 
-    def resume(self, old: Barrier) -> None:
-        """Go on with the pull and the greatest multipliers of a barrier of the same vectors."""
+    def resume(self, old: Barriers) -> None:
+        """Go on with the pull and the greatest multipliers of barriers of the same vectors."""
         self.most = old.most.copy()
-        self.weight = old.weight if self.held.hold.one_sided else old.weight * self.tau / old.tau
+        self.weight = np.where(self.held.one_sided, old.weight, old.weight * self.tau / old.tau)
 
-    def mixed(self, other: Barrier, where: BoolArray) -> Barrier:
-        """A barrier that is another one of the same vectors in some groups (groups, 1)."""
-        mixed = Barrier(self.held, most=1.0, ease=1.0)
+    def mixed(self, other: Barriers, where: BoolArray) -> Barriers:
+        """Barriers that are others of the same vectors for some of these (vectors,)."""
+        mixed = Barriers(self.held, most=1.0, ease=1.0)
         for what in ("goal", "tau", "most", "weight"):
             setattr(mixed, what, np.where(where, getattr(other, what), getattr(self, what)))
         return mixed
 
     def _goal(self, widest: Each) -> Array:
-        return np.maximum(self.goal, widest) if self.held.hold.gives_way else self.goal
+        return np.where(self.held.gives_way, np.maximum(self.goal, widest), self.goal)
 
     @property
     def lagging(self) -> Array:
-        """(groups, vectors) how many times as wide as asked for the distances are."""
-        return np.ones_like(self.tau) if self.held.hold.one_sided else np.asarray(self.tau / self.goal)
+        """(vectors,) how many times as wide as asked for the distances are."""
+        return np.where(self.held.one_sided, 1.0, self.tau / self.goal)
 
-    def numbers(self, vectors: Array) -> Array:
-        """(groups, vectors) the numbers c that may reach 0."""
-        hold = self.held.hold
-        if hold.one_sided:
-            numbers: Array = (vectors[..., 0] - hold.radius) / self.tau
-            return numbers
-        u = vectors / self.tau[..., None]
-        return np.asarray(0.5 * (np.einsum("gqd,gqd->gq", u, u) - 1.0))
+    @property
+    def multipliers(self) -> tuple[Array, ...]:
+        """For each batch (groups, vectors) the weight of |v|^2 / 2 in the cost that holds the vector."""
+        return self.held.by_batch(self.weight / self.tau**2)
 
-    def violation(self, vectors: Array) -> Array:
-        """(groups, vectors) |v| / goal."""
-        return np.sqrt(self.held.hold.squares(vectors) / self.goal**2)
+    def numbers(self, at: Rowed) -> Array:
+        """(vectors,) the numbers c that may reach 0."""
+        below = (at.values - self._radius) / self.tau
+        return np.where(self.held.one_sided, below, 0.5 * (at.squares / self.tau**2 - 1.0))
 
-    def cost(self, vectors: Array, mu: Each) -> Array:
-        """(groups,) penalties, and what the vectors cost anyhow."""
-        own = self.held.hold.weight * self.held.hold.squares(vectors)
-        total: Array = (penalty(self.numbers(vectors), mu, self.most) + 0.5 * own).sum(axis=1)
-        return total
+    def violation(self, at: Rowed) -> Array:
+        """(vectors,) |v| / goal."""
+        return np.asarray(np.sqrt(at.squares) / self.goal)
 
-    def add_to(self, normal: Normal, vectors: Array, jacobians: tuple[Array, ...], mu: Each, damping: Array) -> Work:
-        """Add the batch to the normal equations of a step.
+    def cost(self, at: Rowed, mu: Each) -> Array:
+        """(vectors,) penalties, and what the vectors cost anyhow."""
+        return np.asarray(penalty(self.numbers(at), mu, self.most) + 0.5 * self._own * at.squares)
+
+    def add_to(self, normal: Normal, at: Rowed, jacobians: Jacobians, mu: Each, damping: Array) -> Work:
+        """Add everything held to the normal equations of a step.
 
         Args:
             normal: to be added to.
-            vectors: (groups, vectors, d).
-            jacobians: for each block (groups, vectors, d, size).
+            at: the vectors.
+            jacobians: how they follow the unknowns.
             mu: of the central path.
             damping: (blocks,).
         """
-        held, hold, tau = self.held, self.held.hold, self.tau
-        c = self.numbers(vectors)
+        held, tau = self.held, self.tau
+        c = self.numbers(at)
         w, slack, over = self._multipliers(c, mu)
-        stiffness = slack / w + over / (self.most - w)
-        shift = (c + mu / w - mu / (self.most - w)) / stiffness
+        left = self.most - w
+        stiffness = slack / w + over / left
+        shift = (c + mu / w - mu / left) / stiffness
         pull = np.clip(w + shift, 0.0, self.most)
-        groups = len(vectors)
-        if hold.one_sided:
-            own = hold.weight * tau**2 * (vectors[..., 0] > 0.0)
-            u = np.ones((*c.shape, 1))
-            roots, along = np.sqrt(1.0 / stiffness + own), np.zeros_like(c)
-            force = (pull + own * vectors[..., 0] / tau)[..., None]
-        else:
-            own = hold.weight * tau**2
-            u = vectors / tau[..., None]
-            square = np.einsum("gqd,gqd->gq", u, u)
-            across = w + own + (damping[held.blocks[0]] * hold.ties)[:, None] * tau**2
-            roots = np.sqrt(across)
-            along = (np.sqrt(across + square / stiffness) - roots) / np.maximum(square, _NEARLY_NONE)
-            force = (pull + own)[..., None] * u
-        rows = []
-        for jacobian in jacobians:
-            row = (roots / tau)[..., None, None] * jacobian
-            if not hold.one_sided:
-                radial = u[..., None, :] @ jacobian
-                row += ((along / tau)[..., None] * u)[..., None] * radial
-            rows.append(row.reshape(groups, -1, row.shape[-1]))
-        force = (force / tau[..., None]).reshape(groups, 1, -1)
-        for blocks, row, jacobian in zip(held.blocks, rows, jacobians, strict=True):
-            flat = jacobian.reshape(groups, -1, jacobian.shape[-1])
-            scatter_add(normal.gradient, blocks, (force @ flat)[:, 0])
-            scatter_add(normal.diagonal, blocks, np.swapaxes(row, 1, 2) @ row)
-        if held.pair is not None:
-            scatter_add(normal.coupling, held.pair, np.swapaxes(rows[0], 1, 2) @ rows[1])
-        return Work(w, stiffness, shift, u, roots, along, tuple(rows))
+        own = self._own * tau**2
+        own[held.one_sided & (at.values <= 0.0)] = 0.0
+        square = np.where(held.one_sided, 0.0, at.squares / tau**2)
+        across = np.where(held.one_sided, 1.0 / stiffness + own, w + own + damping[held.first] * self._ties * tau**2)
+        roots = np.sqrt(across)
+        along = (np.sqrt(across + square / stiffness) - roots) / np.maximum(square, _NEARLY_NONE)
+        u = np.where(held.one_sided[held.of], 1.0, at.rows / tau[held.of])
+        force = np.where(held.one_sided, pull + own * at.values / tau, pull + own) / tau
+        residuals = self._add(normal, jacobians, u, roots / tau, along / tau, force[held.of] * u)
+        return Work(w, stiffness, shift, u, roots, along, residuals)
+
+    def _add(
+        self, normal: Normal, jacobians: Jacobians, u: Array, across: Array, along: Array, force: Array
+    ) -> tuple[tuple[Array, ...], ...]:
+        """Add batch by batch; the residuals' derivatives."""
+        held, found = self.held, []
+        for i, (groups, q, d) in enumerate(held.shapes):
+            vectors, rows = held.vectors[i], held.rows[i]
+            by_vector = across[vectors].reshape(groups, q, 1, 1)
+            mine, straight = [], not held.held[i].hold.one_sided
+            if straight:
+                radial = u[rows].reshape(groups, q, 1, d)
+                out = np.swapaxes(along[vectors].reshape(groups, q, 1, 1) * radial, 2, 3)
+            pulls = force[rows].reshape(groups, 1, q * d)
+            for scatter, jacobian in zip(held.blocks[i], jacobians[i], strict=True):
+                row = by_vector * jacobian
+                if straight:
+                    row += out * (radial @ jacobian)
+                row = row.reshape(groups, q * d, -1)
+                mine.append(row)
+                scatter.add(normal.gradient, (pulls @ jacobian.reshape(row.shape))[:, 0])
+                scatter.add(normal.diagonal, np.swapaxes(row, 1, 2) @ row)
+            pair = held.pairs[i]
+            if pair is not None:
+                pair.add(normal.coupling, np.swapaxes(mine[0], 1, 2) @ mine[1])
+            found.append(tuple(mine))
+        return tuple(found)
 
     def bend(self, gradient: Array, work: Work, off: Array) -> None:
-        """Add the gradient (blocks, size) of vectors that turned out to be `off` (groups, vectors, d) at a trial.
+        """Add the gradient (blocks, size) of vectors that turned out to be `off` (rows,) at a trial.
 
         The second-order correction: the same matrix, with what the vectors are beyond their linear prediction.
         """
-        e = off / self.tau[..., None]
-        residual = work.roots[..., None] * e
-        residual += (work.along * np.einsum("gqd,gqd->gq", work.u, e))[..., None] * work.u
-        flat = residual.reshape(len(off), 1, -1)
-        for blocks, row in zip(self.held.blocks, work.rows, strict=True):
-            scatter_add(gradient, blocks, (flat @ row)[:, 0])
+        held = self.held
+        e = off / self.tau[held.of]
+        residual = work.roots[held.of] * e + (work.along * held.total(work.u * e))[held.of] * work.u
+        for i, (groups, q, d) in enumerate(held.shapes):
+            flat = residual[held.rows[i]].reshape(groups, 1, q * d)
+            for scatter, row in zip(held.blocks[i], work.residuals[i], strict=True):
+                scatter.add(gradient, (flat @ row)[:, 0])
 
-    def moved(self, jacobians: tuple[Array, ...], step: Array) -> Array:
-        """(groups, vectors, d) how far the vectors move in a step (blocks, size), to first order."""
-        total = np.zeros(jacobians[0].shape[:-1])
-        for blocks, jacobian in zip(self.held.blocks, jacobians, strict=True):
-            groups, q, d, size = jacobian.shape
-            total += (jacobian.reshape(groups, q * d, size) @ step[blocks][..., None]).reshape(groups, q, d)
-        return total
+    def moved(self, jacobians: Jacobians, step: Array) -> Array:
+        """(rows,) how far the vectors move in a step (blocks, size), to first order."""
+        parts = []
+        for one, shape, own in zip(self.held.held, self.held.shapes, jacobians, strict=True):
+            total = np.zeros(shape[0] * shape[1] * shape[2])
+            for blocks, jacobian in zip(one.blocks, own, strict=True):
+                flat = jacobian.reshape(shape[0], shape[1] * shape[2], step.shape[1])
+                total += (flat @ step[blocks][..., None]).reshape(-1)
+            parts.append(total)
+        return self.held.told(parts)
 
     def renew(self, work: Work, moved: Array, taken: BoolArray) -> None:
-        """Multipliers after a step that moved the vectors by `moved`, in the groups (groups,) where it was taken."""
-        if self.held.hold.one_sided:
-            rate = moved[..., 0] / self.tau
-        else:
-            rate = np.einsum("gqd,gqd->gq", work.u, moved) / self.tau
+        """Multipliers after a step that moved the vectors by `moved` (rows,), where (vectors,) it was taken."""
         w = work.weight
-        wanted = w + work.shift + rate / work.stiffness
+        wanted = w + work.shift + self.held.total(work.u * moved) / self.tau / work.stiffness
         wanted = np.clip(wanted, _LEAST_LEFT * w, self.most - _LEAST_LEFT * (self.most - w))
-        self.weight = np.where(taken[:, None], wanted, self.weight)
+        self.weight = np.where(taken, wanted, self.weight)
 
-    def recentre(self, vectors: Array, mu: Each, failed: BoolArray) -> None:
-        """Bring multipliers back onto the central path in groups of which a block (blocks,) failed.
+    def recentre(self, at: Rowed, mu: Each, failed: BoolArray) -> None:
+        """Bring multipliers back onto the central path of vectors whose first block (blocks,) failed.
 
         There the step is one along the slope of what is to fall: damped enough, it does.
         """
-        groups = failed[self.held.blocks[0]]
-        central = central_weight(self.numbers(vectors), mu, self.most)
-        self.weight = np.where(groups[:, None], central, self.weight)
+        central = central_weight(self.numbers(at), mu, self.most)
+        self.weight = np.where(failed[self.held.first], central, self.weight)
 
-    def raise_most(self, vectors: Array, taken: BoolArray, factor: float) -> None:
+    def raise_most(self, at: Rowed, taken: BoolArray, factor: float) -> None:
         """Let multipliers rise further where a vector is too long and its multiplier nearly as great as it may be."""
-        pressed = taken[:, None] & (self.weight > 0.5 * self.most) & (self.numbers(vectors) > -0.02)
+        pressed = taken & (self.weight > 0.5 * self.most) & (self.numbers(at) > -0.02)
         self.most = np.where(pressed, factor * self.most, self.most)
 
     def _multipliers(self, c: Array, mu: Each) -> tuple[Array, Array, Array]:

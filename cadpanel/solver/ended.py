@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
-from cadpanel.solver.barrier import Barrier
+from cadpanel.solver.barrier import Barriers
 from cadpanel.solver.components import Components
 
 
@@ -80,18 +80,17 @@ class Ended:
     steps: int
     settled: BoolArray
     told_to_stop: bool
-    barriers: tuple[Barrier, ...]
+    barriers: Barriers
     mu: Array
     damping: Array
 
     @property
     def multipliers(self) -> tuple[Array, ...]:
         """For each batch (groups, vectors) the weight w of |v|^2 / 2 in the cost that holds the vector."""
-        return tuple(barrier.weight / barrier.tau**2 for barrier in self.barriers)
+        return self.barriers.multipliers
 
     def mixed(self, other: Ended, where: BoolArray, component: Components) -> Ended:
         """The other one in some components, this one in the rest; the steps of both."""
-        parts = zip(self.barriers, other.barriers, strict=True)
         return Ended(
             now=self.now.mixed(other.now, where, component),
             best=self.best.mixed(other.best, where, component),
@@ -99,7 +98,7 @@ class Ended:
             steps=self.steps + other.steps,
             settled=np.where(where, other.settled, self.settled),
             told_to_stop=self.told_to_stop or other.told_to_stop,
-            barriers=tuple(one.mixed(two, component.seen_by(one.held.blocks[0]).each(where)) for one, two in parts),
+            barriers=self.barriers.mixed(other.barriers, where[component.label[self.barriers.held.first]]),
             mu=np.where(where, other.mu, self.mu),
             damping=np.where(where, other.damping, self.damping),
         )

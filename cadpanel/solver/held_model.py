@@ -63,6 +63,10 @@ class HeldModel(Protocol):
         """The problem at the unknowns (count, size); costs or vectors of a trial that makes no sense are not finite."""
         ...
 
+    def cost(self, unknowns: Array) -> tuple[Array, tuple[Array, ...]]:
+        """The cost and the held vectors, without how they change."""
+        ...
+
     def vectors(self, unknowns: Array) -> tuple[Array, ...]:
         """The held vectors alone."""
         ...

@@ -12,18 +12,19 @@ it would end alone. What a step spoils in one place is not undone in another, se
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
-from cadpanel.solver.barrier import Barrier, Work
+from cadpanel.solver.barrier import Barriers, Work
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.bounds import BoundedStep, bounded_step
 from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Ended, Limits
 from cadpanel.solver.held_model import HeldModel
-from cadpanel.solver.merit import Merit
+from cadpanel.solver.held_rows import HeldRows
+from cadpanel.solver.merit import Merit, Place
 from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 
 # Damping: a share of the free cost's own Gauss-Newton matrix, and how much of its diagonal's unit stands in for rows of
@@ -103,66 +104,53 @@ class _Run:
         self.model, self.limits = model, limits
         self.pattern, self.bounds = model.pattern, model.bounds
         self.blocks = Components.of(self.pattern)
-        self.of = [self.blocks.seen_by(one.blocks[0]) for one in model.held]
         count = self.blocks.count
         self.ease = np.broadcast_to(ease, count).astype(np.float64)
         self.goes_on = np.ones(count, dtype=bool) if only is None else only.copy()
         self.moving = self.goes_on.copy()
         self.settled = np.zeros(count, dtype=bool)
         self.least = np.broadcast_to(limits.least_cost, count)
-        self.point = model.at(np.where(self.blocks.each(self.moving), self.bounds.clip(start), start))
-        self.vectors_held = np.zeros(count)
-        for one, of in zip(model.held, self.of, strict=True):
-            self.vectors_held += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
+        point = model.at(np.where(self.blocks.each(self.moving), self.bounds.clip(start), start))
+        self.held = HeldRows.of_batches(model.held, point.vectors, self.pattern.count, len(self.pattern.pairs))
+        self.place = Place(point, self.held.measured(point.vectors))
+        self.of = self.blocks.seen_by(self.held.first)
+        self.giving = np.flatnonzero(self.held.gives_way)
+        self.of_giving = self.of.seen_by(self.giving)
+        self.vectors_held = np.bincount(self.of.label, minlength=count).astype(np.float64)
         self.growth, self.lag = np.full(count, FIRST_GROWTH), np.full(count, _LAG)
         self.anew, self.waited = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
         self.scales = self.model.lengths[:, None] ** self.model.powers
-        self.merit = Merit(model, self.blocks, self.of)
+        self.merit = Merit(model, self.blocks, self.held)
         if after is None:
             self._begin()
         else:
             self._resume(after)
-        self.target = np.full(count, np.inf)
-        for barrier, of in self._giving():
-            self.target = np.minimum(self.target, of.smallest(barrier.goal))
+        self.target = self.of_giving.smallest(self.barriers.goal[self.giving])
         self.target[np.isinf(self.target)] = 0.0
-        self.now = self.best = self.merit.worth(self.point, self.barriers)
-
-    def _giving(self) -> list[tuple[Barrier, Components]]:
-        """What may give way."""
-        return [(b, of) for b, of in zip(self.barriers, self.of, strict=True) if b.held.hold.gives_way]
+        self.now = self.best = self.merit.worth(self.place, self.barriers)
 
     def _begin(self) -> None:
-        count = self.blocks.count
-        giving, beyond, self.widest = np.zeros(count), np.zeros(count), np.zeros(count)
-        for one, of, vectors in zip(self.model.held, self.of, self.point.vectors, strict=True):
-            # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares
-            # does.
-            allowed = one.hold.radius * (of.each(self.ease) if one.hold.gives_way else 1.0)
-            far = np.maximum(np.sqrt(one.hold.squares(vectors)) - allowed, 0.0)
-            beyond += of.total(np.sum(far**2, axis=1))
-            if one.hold.gives_way:
-                giving += one.hold.radius.shape[1] * np.bincount(of.label, minlength=count)
-                self.widest = np.maximum(self.widest, of.largest(np.linalg.norm(vectors, axis=-1)))
-        scale = np.maximum.reduce([self.merit.free_cost(self.point), _OPEN * beyond, self.least, np.full(count, _TINY)])
-        self.mu = _BARRIER * scale / np.maximum(np.where(giving > 0.0, giving, self.vectors_held), 1.0)
-        self.barriers = tuple(
-            Barrier(one, most=of.each(_ELASTIC * self.mu), ease=of.each(self.ease))
-            for one, of in zip(self.model.held, self.of, strict=True)
-        )
-        for barrier, of, vectors in zip(self.barriers, self.of, self.point.vectors, strict=True):
-            barrier.open(vectors, of.each(self.widest), of.each(self.lag), of.each(self.mu))
+        count, held, at, ease = self.blocks.count, self.held, self.place.at, self.ease[self.of.label]
+        # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares does.
+        goal, long = Barriers(held, most=1.0, ease=ease).goal, np.sqrt(at.squares)
+        beyond = self.of.total(np.maximum(long - goal, 0.0) ** 2)
+        giving = np.bincount(self.of_giving.label, minlength=count)
+        self.widest = self.of_giving.largest(long[self.giving])
+        scale = np.maximum.reduce([self.merit.free_cost(self.place), _OPEN * beyond, self.least, np.full(count, _TINY)])
+        self.mu = _BARRIER * scale / np.maximum(np.where(giving > 0, giving, self.vectors_held), 1.0)
+        mu = self.mu[self.of.label]
+        self.barriers = Barriers(held, most=_ELASTIC * mu, ease=ease)
+        self.barriers.open(at, self.widest[self.of.label], self.lag[self.of.label], mu)
         self.damping = np.full(count, _DAMPING.least)
 
     def _begin_anew(self, where: BoolArray) -> None:
         """Begin again at the best point so far of some components."""
         old = self.barriers, self.mu, self.widest, self.damping
         self.anew += where
-        self.point = self.model.at(np.where(self.blocks.each(where), self.best.unknowns, self.point.unknowns))
+        self.place = self.merit.at(np.where(self.blocks.each(where), self.best.unknowns, self.place.point.unknowns))
         self.growth, self.lag = np.where(where, FIRST_GROWTH, self.growth), np.where(where, _LAG, self.lag)
         self._begin()
-        parts = zip(old[0], self.barriers, self.of, strict=True)
-        self.barriers = tuple(one.mixed(new, of.each(where)) for one, new, of in parts)
+        self.barriers = old[0].mixed(self.barriers, where[self.of.label])
         self.mu, self.widest, self.damping = (
             np.where(where, new, one) for new, one in zip((self.mu, self.widest, self.damping), old[1:], strict=True)
         )
@@ -170,11 +158,8 @@ class _Run:
     def _resume(self, after: Ended) -> None:
         self.mu, self.widest = 4.0 * after.mu, np.zeros(self.blocks.count)
         self.damping = np.minimum(after.damping, 1.0)
-        self.barriers = tuple(
-            Barrier(one, most=1.0, ease=of.each(self.ease)) for one, of in zip(self.model.held, self.of, strict=True)
-        )
-        for barrier, old in zip(self.barriers, after.barriers, strict=True):
-            barrier.resume(old)
+        self.barriers = Barriers(self.held, most=1.0, ease=self.ease[self.of.label])
+        self.barriers.resume(after.barriers)
 
     def ended(self, asked: Array | float, tell: Told | None) -> Ended:
         """Step until every component has settled, or nothing is left of the steps, or somebody says so."""
@@ -187,7 +172,7 @@ class _Run:
                 self._begin_anew(wedged)
             if tell is not None:
                 beyond = np.maximum(self.now.firm, self.now.excess * self.ease / asked)[self.moving].max()
-                stopped = not tell(steps, float(beyond), self.point.cost)
+                stopped = not tell(steps, float(beyond), self.place.point.cost)
         return Ended(
             now=self.now,
             best=self.best,
@@ -202,7 +187,7 @@ class _Run:
 
     def _step(self) -> None:
         """One step of every component that still moves."""
-        point, pattern, goes_on = self.point, self.pattern, self.goes_on
+        (point, at), pattern, goes_on = self.place, self.pattern, self.goes_on
         damping = self.damping[pattern.component]
         normal = Normal(
             point.normal.gradient.copy(),
@@ -211,19 +196,18 @@ class _Run:
         )
         i = np.arange(pattern.size)
         normal.diagonal[:, i, i] += _IDLE * (damping * self.model.lengths**2)[:, None] / self.scales**2
-        parts = list(zip(self.barriers, self.of, point.vectors, point.jacobians, strict=True))
-        work = [b.add_to(normal, vectors, rates, of.each(self.mu), damping) for b, of, vectors, rates in parts]
+        work = self.barriers.add_to(normal, at, point.jacobians, self.mu[self.of.label], damping)
         bounded = bounded_step(pattern, normal, np.zeros_like(point.unknowns), point.unknowns, self.bounds)
         if bounded is None:
             self.damping = np.where(goes_on, np.minimum(10.0 * self.damping, _DAMPING.most), self.damping)
             self.goes_on = goes_on & (self.damping < _DAMPING.most)
             return
-        moved = [barrier.moved(rates, bounded.step) for barrier, _, _, rates in parts]
+        moved = self.barriers.moved(point.jacobians, bounded.step)
         step = bounded.step + self._bent(bounded, work, moved)
         step[~goes_on[pattern.component]] = 0.0
         promise = np.where(goes_on[pattern.component], bounded.promised, 0.0)
-        self.point, taken, gain, failed = self.merit.take(
-            point, step, promise, barriers=self.barriers, mu=self.mu, goes_on=goes_on, least=self.least
+        self.place, taken, gain, failed = self.merit.take(
+            self.place, step, promise, barriers=self.barriers, mu=self.mu, goes_on=goes_on, least=self.least
         )
         far = self.blocks.largest(np.abs(step) / self.scales)
         calmer = np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG)
@@ -232,49 +216,41 @@ class _Run:
         self.damping, self.growth = (
             np.where(goes_on, new, old) for new, old in ((damped, self.damping), (growth, self.growth))
         )
-        cost, promised = self.merit.free_cost(self.point), np.abs(self.blocks.total(promise))
+        cost, promised = self.merit.free_cost(self.place), np.abs(self.blocks.total(promise))
         ready = _READY * self.vectors_held * self.mu + _SHARE_LEFT * cost + self.least
         settled = goes_on & ~failed & (gain > _GAIN) & (promised <= ready)
         stuck = failed & (self.growth >= _STUCK)
         self._renew(work, moved, taken, settled, stuck)
-        self.now = self.merit.worth(self.point, self.barriers)
+        self.now = self.merit.worth(self.place, self.barriers)
         self.best = self.best.mixed(self.now, self.best.beaten_by(self.now), self.blocks)
         self._narrow(settled, failed, promised, cost)
 
-    def _bent(self, bounded: BoundedStep, work: Sequence[Work], moved: Sequence[Array]) -> Array:
+    def _bent(self, bounded: BoundedStep, work: Work, moved: Array) -> Array:
         """(count, size) what bends a step to where the vectors turn out to be; nothing where that is no small part."""
-        point = self.point
+        point, at = self.place
         with np.errstate(all="ignore"):
             gradient = np.zeros_like(point.unknowns)
-            there = self.model.vectors(self.bounds.clip(point.unknowns + bounded.step))
-            for barrier, vectors, part, move, ahead in zip(
-                self.barriers, point.vectors, work, moved, there, strict=True
-            ):
-                barrier.bend(gradient, part, ahead - vectors - move)
+            there = self.held.told(self.model.vectors(self.bounds.clip(point.unknowns + bounded.step)))
+            self.barriers.bend(gradient, work, there - at.rows - moved)
             gradient[bounded.blocked] = 0.0
             known = np.isfinite(self.blocks.total(gradient.sum(axis=1)))
             bent = bounded.factors.solve(-np.where(self.blocks.each(known), gradient, 0.0))
         small = self.blocks.largest(np.abs(bent)) <= _BENT * self.blocks.largest(np.abs(bounded.step))
         return np.where(self.blocks.each(small), bent, 0.0)
 
-    def _renew(
-        self, work: Sequence[Work], moved: Sequence[Array], taken: BoolArray, settled: BoolArray, stuck: BoolArray
-    ) -> None:
+    def _renew(self, work: Work, moved: Array, taken: BoolArray, settled: BoolArray, stuck: BoolArray) -> None:
         """Multipliers after a step."""
-        parts = zip(self.barriers, self.of, work, moved, self.point.vectors, strict=True)
-        for barrier, of, part, move, vectors in parts:
-            whole = np.all([taken[blocks] for blocks in barrier.held.blocks], axis=0)
-            barrier.renew(part, move, whole & self.goes_on[of.label])
-            if stuck.any():
-                barrier.recentre(vectors, of.each(self.mu), stuck[self.pattern.component])
-            if settled.any():
-                barrier.raise_most(vectors, whole & settled[of.label], _ELASTIC_RISE)
+        label, at = self.of.label, self.place.at
+        whole = taken[self.held.first] & taken[self.held.second]
+        self.barriers.renew(work, moved, whole & self.goes_on[label])
+        if stuck.any():
+            self.barriers.recentre(at, self.mu[label], stuck[self.pattern.component])
+        if settled.any():
+            self.barriers.raise_most(at, whole & settled[label], _ELASTIC_RISE)
 
     def _narrow(self, settled: BoolArray, failed: BoolArray, promised: Array, cost: Array) -> None:
         """Narrow distances and barrier as far as the steps have settled; and end where nothing is left to do."""
-        lagging = np.ones(self.blocks.count)
-        for barrier, of in zip(self.barriers, self.of, strict=True):
-            lagging = np.maximum(lagging, of.largest(barrier.lagging))
+        lagging = self.of.largest(self.barriers.lagging, 1.0)
         through = settled & (self.widest <= self.target) & (lagging <= 1.0)
         end = np.maximum.reduce([_BARRIER_END * cost, self.least, np.full_like(cost, _TINY)])
         end /= np.maximum(self.vectors_held, 1.0)
@@ -293,5 +269,5 @@ class _Run:
         self.waited += waits & ~failed & self.goes_on
         follows = self.goes_on & ~failed & ~waits
         self.widest = np.where(follows, np.maximum(self.widest * self.lag, self.target), self.widest)
-        for barrier, of, vectors in zip(self.barriers, self.of, self.point.vectors, strict=True):
-            barrier.follow(vectors, of.each(self.widest), of.each(self.lag), of.each(follows))
+        label = self.of.label
+        self.barriers.follow(self.place.at, self.widest[label], self.lag[label], follows[label])

@@ -61,10 +61,12 @@ class Stopping:
     Attributes:
         cost: relative decrease that the model still promises, below which it stops.
         iterations: steps tried at most.
+        least: steps tried before it stops for what is promised.
     """
 
     cost: float = 1e-10
     iterations: int = 100
+    least: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +137,7 @@ def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping:
         better = (per_component(ahead.cost) < before) & ~done
         mu, growth = _DAMPING.after(mu, growth, gain, failed)
         # Refused again and again: rounding is all that is left of this component.
-        done |= (hoped <= stopping.cost * before) | (mu >= _DAMPING.most)
+        done |= (mu >= _DAMPING.most) | ((hoped <= stopping.cost * before) & (iterations >= stopping.least))
         if better.any():
             now = ahead
     return Solution(now.unknowns, per_component(now.cost), done, iterations, mu)
@@ -176,12 +178,14 @@ def _spared(model: Model, now: _Tried, ahead: _Tried, failed: BoolArray, promise
         kept = None if ahead.model is None else ahead.model.where(back, now.normal)
         return _Tried(unknowns, np.where(back, now.cost, ahead.cost), kept)
     harm = _gain(pattern.around(now.cost), pattern.around(ahead.cost), pattern.around(promised)) <= 0.0
-    ahead = _tried(model, np.where((failed[component] & harm)[:, None], now.unknowns, ahead.unknowns), last)
-    costs = (np.bincount(component, one.cost, minlength=pattern.components) for one in (ahead, now))
+    unknowns = np.where((failed[component] & harm)[:, None], now.unknowns, ahead.unknowns)
+    # Mostly this does no good either, and its model is of no use.
+    spared = _tried(model, unknowns, last=True)
+    costs = (np.bincount(component, one.cost, minlength=pattern.components) for one in (spared, now))
     stuck = failed & ~np.less(*costs)
-    if (stuck[component] & ~harm).any() and not stuck.all():
-        ahead = _tried(model, np.where(stuck[component, None], now.unknowns, ahead.unknowns), last)
-    return ahead
+    if stuck.all():
+        return spared
+    return _tried(model, np.where(stuck[component, None], now.unknowns, unknowns), last)
 
 
 def _gain(before: Array, after: Array, promised: Array) -> Array:

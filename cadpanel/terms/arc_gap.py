@@ -21,7 +21,7 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.features.layout import Layout
 from cadpanel.geometry.vectors import dot
 from cadpanel.solver.hold import Hold
-from cadpanel.terms.placement import Placement
+from cadpanel.terms.placement import Carrying, Placement
 from cadpanel.terms.seams import SeamBatch, arc_patches, arc_places
 from cadpanel.terms.state import State, slopes
 from cadpanel.terms.term import HeldTerm
@@ -39,6 +39,7 @@ class _Side:
         places: (seams, q) the points among the panel's arc points.
         patch: (seams, q) the other panel's patches that they meet.
         end: (seams,) the other panel's end.
+        carrying: from the points' panel to the other one.
     """
 
     own: IntArray
@@ -46,6 +47,7 @@ class _Side:
     places: IntArray
     patch: IntArray
     end: IntArray
+    carrying: Carrying
 
 
 class ArcGap(HeldTerm):
@@ -70,6 +72,7 @@ class ArcGap(HeldTerm):
             places=arc_places(layout, seams, side),
             patch=np.where(seams.reversed[:, None], mirrored, patch),
             end=seams.edges[:, 1 - side],
+            carrying=self.place.carrying(seams.panels[:, side], seams.panels[:, 1 - side]),
         )
 
     def vectors(self, state: State) -> Array:
@@ -106,8 +109,8 @@ class ArcGap(HeldTerm):
     def _distances(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
         """Distances (seams, q, 2), the points (seams, q, 3) in the other panels' frames, and the cones' inner rates."""
         own = state.arcs.position[side.own[:, None], side.places]
-        points = self.place.carry(own, side.own, side.other)
-        from_cone, inner = state.surfaces.distance(points, side.other, side.patch)
+        points = side.carrying.points(own)
+        from_cone, inner = state.surfaces.distance_inner(points, side.other, side.patch)
         m, s = state.cuts.m[side.other, side.end], state.cuts.s[side.other, side.end]
         from_cut = dot(points, m[:, None]) - s[:, None]
         return np.stack([from_cone, from_cut], axis=-1), points, inner
@@ -121,7 +124,7 @@ class ArcGap(HeldTerm):
         m = state.cuts.m[side.other, side.end]
         # How the distances follow the point itself: the cone's normal, and the cut plane's.
         gradients = np.stack([-inner[..., 3:6], np.broadcast_to(m[:, None], points.shape)], axis=2)
-        moved = self.place.turn(side.own, side.other)[:, None] @ slopes(state.arcs)[side.own[:, None], side.places]
+        moved = side.carrying.rates(slopes(state.arcs)[side.own[:, None], side.places])
         by_cone = (inner[..., None, :] @ outer[side.other[:, None], side.patch])[..., 0, :]
         by_cut = points @ dm[side.other, side.end] - ds[side.other, side.end][:, None]
         return distances, gradients @ moved, np.stack([by_cone, by_cut], axis=2)

@@ -16,7 +16,7 @@ from cadpanel.features.layout import Layout
 from cadpanel.geometry.seam_frames import seam_frames, tangents_at
 from cadpanel.geometry.vectors import dot
 from cadpanel.solver.hold import Hold
-from cadpanel.terms.placement import Placement
+from cadpanel.terms.placement import Carrying, Placement
 from cadpanel.terms.seams import Movers, SeamBatch, movers
 from cadpanel.terms.state import State, slopes
 from cadpanel.terms.term import HeldTerm
@@ -50,7 +50,9 @@ class _Side:
         end: (s,) the other panel's edge.
         corners: (s, 2) where that begins and ends.
         straight: whether it is straight.
-        places, share: see `terms.seams.Movers`.
+        places: see `terms.seams.Movers`.
+        share: (q,) see there; None where every point is the first of both.
+        carrying: from the points' panel to the other one.
     """
 
     own: IntArray
@@ -59,7 +61,17 @@ class _Side:
     corners: IntArray
     straight: bool
     places: IntArray
-    share: Array
+    share: Array | None
+    carrying: Carrying
+
+    def taken(self, values: Array) -> Array:
+        """(s, q, ...) of values (panels, boundary points, ...), at the points that are held."""
+        own = self.own[:, None]
+        if self.share is None:
+            return np.asarray(values[own, self.places[..., 0]])
+        share = self.share.reshape(-1, *(1,) * (values.ndim - 2))
+        first, second = (values[own, self.places[..., end]] for end in (0, 1))
+        return np.asarray((1.0 - share) * first + share * second)
 
     def with_other(self, second: _Side) -> _Side:
         """These seams, and after them those of another side that is held to curved edges as well.
@@ -75,7 +87,8 @@ class _Side:
             corners=np.concatenate([self.corners, second.corners]),
             straight=False,
             places=np.concatenate(filled),
-            share=np.zeros(most),
+            share=None,
+            carrying=self.carrying.after(second.carrying),
         )
 
 
@@ -134,7 +147,8 @@ class MixedGap(HeldTerm):
             corners=seams.corners[:, 1 - side][:, [0, -1]],
             straight=seams.straight(1 - side),
             places=moving.places,
-            share=moving.share,
+            share=moving.share if moving.share.any() else None,
+            carrying=self.place.carrying(seams.panels[:, side], seams.panels[:, 1 - side]),
         )
 
     def _both(self, state: State, *, derivatives: bool) -> tuple[_Held, _Held]:
@@ -151,15 +165,8 @@ class MixedGap(HeldTerm):
         return held.cut(slice(seams), first.places.shape[1]), held.cut(slice(seams, None), second.places.shape[1])
 
     def _held(self, state: State, side: _Side, *, derivatives: bool) -> _Held:
-        own, other = side.own, side.other
-        at = state.boundary.position[own[:, None, None], side.places]
-        share = side.share[:, None]
-        points = self.place.carry((1.0 - share) * at[:, :, 0] + share * at[:, :, 1], own, other)
-        moved = None
-        if derivatives:
-            rates = slopes(state.boundary)[own[:, None, None], side.places]
-            rates = (1.0 - share[..., None]) * rates[:, :, 0] + share[..., None] * rates[:, :, 1]
-            moved = self.place.turn(own, other)[:, None] @ rates
+        points = side.carrying.points(side.taken(state.boundary.position))
+        moved = side.carrying.rates(side.taken(slopes(state.boundary))) if derivatives else None
         return _from_line(state, side, points, moved) if side.straight else _from_end(state, side, points, moved)
 
 
@@ -189,12 +196,13 @@ def _from_end(state: State, side: _Side, points: Array, moved: Array | None) -> 
     other, end = side.other, side.end
     surfaces, cuts = state.surfaces, state.cuts
     patch = surfaces.assign(points, other)
-    from_skin, inner = surfaces.distance(points, other, patch)
     m = cuts.m[other, end]
-    from_cut = dot(points, m[:, None]) - cuts.s[other, end][:, None]
-    vectors = np.stack([from_skin, from_cut, np.zeros_like(from_skin)], axis=-1)
+    vectors = np.zeros(points.shape)
+    vectors[..., 1] = dot(points, m[:, None]) - cuts.s[other, end][:, None]
     if moved is None:
+        vectors[..., 0] = surfaces.distance(points, other, patch)
         return _Held(vectors, None, None)
+    vectors[..., 0], inner = surfaces.distance_inner(points, other, patch)
     if surfaces.outer is None or cuts.dm is None or cuts.ds is None:
         raise ValueError("the state was walked without derivatives")
     gradients = np.zeros((*points.shape[:2], 3, 3))

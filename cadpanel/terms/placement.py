@@ -11,6 +11,31 @@ from cadpanel.arrays import Array, IntArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Carrying:
+    """How g frames stand in g others; worked out once, for frames stand still.
+
+    Attributes:
+        turn: (g, 3, 3) which turns vectors of the first into the others.
+        shift: (g, 1, 3) their origins in the others, in the solver's length.
+    """
+
+    turn: Array
+    shift: Array
+
+    def points(self, points: Array) -> Array:
+        """Points (g, q, 3) of the first frames in the others."""
+        return np.asarray(points @ np.swapaxes(self.turn, 1, 2) + self.shift)
+
+    def rates(self, rates: Array) -> Array:
+        """(g, q, 3, unknowns) how such points follow unknowns."""
+        return np.asarray(self.turn[:, None] @ rates)
+
+    def after(self, other: Carrying) -> Carrying:
+        """The same, and after it another's frames."""
+        return Carrying(turn=np.concatenate([self.turn, other.turn]), shift=np.concatenate([self.shift, other.shift]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Placement:
     """Where the panels' own frames stand.
 
@@ -32,11 +57,8 @@ class Placement:
         flat = points.reshape(len(points), math.prod(points.shape[1:-1]), 3)
         return (flat @ np.swapaxes(axes, 1, 2) + origins[:, None, :]).reshape(points.shape)
 
-    def carry(self, points: Array, source: IntArray, target: IntArray) -> Array:
-        """Points (g, q, 3) of the frames `source` (g,), in the frames `target` (g,)."""
-        local: Array = (self.to_world(points, source) - self.origins[target, None] / self.length) @ self.axes[target]
-        return local
-
-    def turn(self, source: IntArray, target: IntArray) -> Array:
-        """(g, 3, 3) which turns vectors of the frames `source` into the frames `target`."""
-        return np.swapaxes(self.axes[target], 1, 2) @ self.axes[source]
+    def carrying(self, source: IntArray, target: IntArray) -> Carrying:
+        """From the frames `source` (g,) into the frames `target` (g,)."""
+        back = self.axes[target]
+        apart = (self.origins[source] - self.origins[target])[:, None] / self.length
+        return Carrying(turn=np.swapaxes(back, 1, 2) @ self.axes[source], shift=apart @ back)

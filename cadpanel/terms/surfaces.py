@@ -12,7 +12,7 @@ from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
 from cadpanel.features.distance import middle, patch_outer, round_numbers
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
-from cadpanel.geometry.cone import cone_distance_inner, plane_distance, plane_inner
+from cadpanel.geometry.cone import cone_distance, cone_distance_inner, plane_distance, plane_inner
 from cadpanel.geometry.vectors import dot
 
 
@@ -71,18 +71,28 @@ class Surfaces:
             patch -= asked & passed
         return patch
 
-    def distance(self, x: Array, panel: IntArray, patch: IntArray) -> tuple[Array, Array]:
-        """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,), and its inner derivative."""
-        shape = patch.shape
-        owner = np.broadcast_to(panel[:, None], shape).reshape(-1)
-        which = patch.reshape(-1)
-        points = np.moveaxis(x.reshape(-1, 1, 3), 2, 0)
-        p, t, n = (axis[owner, which] for axis in (self.p, self.t, self.n))
-        round_, inner = cone_distance_inner(points, p, t, n, self.radius[owner, which], self.half_angle[owner, which])
-        flat, flat_inner = plane_distance(points, p, n), plane_inner(points, n)
-        curved = self.curved[owner, which][:, None]
-        distance = np.where(curved, round_, flat)
-        return distance.reshape(shape), np.where(curved[..., None], inner, flat_inner).reshape(*shape, -1)
+    def distance(self, x: Array, panel: IntArray, patch: IntArray) -> Array:
+        """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,)."""
+        points, cone, curved = self._under(x, panel, patch)
+        distance = np.where(curved, cone_distance(points, *cone), plane_distance(points, cone[0], cone[2]))
+        return distance.reshape(patch.shape)
+
+    def distance_inner(self, x: Array, panel: IntArray, patch: IntArray) -> tuple[Array, Array]:
+        """The same, and its inner derivative (g, q, 8)."""
+        points, cone, curved = self._under(x, panel, patch)
+        round_, inner = cone_distance_inner(points, *cone)
+        distance = np.where(curved, round_, plane_distance(points, cone[0], cone[2]))
+        inner = np.where(curved[..., None], inner, plane_inner(points, cone[2]))
+        return distance.reshape(patch.shape), inner.reshape(*patch.shape, -1)
+
+    def _under(
+        self, x: Array, panel: IntArray, patch: IntArray
+    ) -> tuple[Array, tuple[Array, Array, Array, Array, Array], BoolArray]:
+        """All points (3, g q, 1), the numbers p, t, n, radius and half angle of their patches, and which are curved."""
+        place = (panel[:, None] * self.p.shape[1] + patch).reshape(-1)
+        p, t, n = (axis.reshape(-1, 3)[place] for axis in (self.p, self.t, self.n))
+        radius, half_angle, curved = (one.reshape(-1)[place] for one in (self.radius, self.half_angle, self.curved))
+        return x.reshape(-1, 1, 3).transpose(2, 0, 1), (p, t, n, radius, half_angle), curved[:, None]
 
 
 def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:

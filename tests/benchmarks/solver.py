@@ -11,6 +11,7 @@ the lowest that is known, which a long run of ours finds first.
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Annotated
@@ -84,8 +85,18 @@ class _ReachedError(Exception):
     """scipy's cost is as low as ours."""
 
 
-def scipys(prepared: Prepared, target: float, limit: float, *, scaled: bool) -> tuple[float, float]:
-    """Seconds until scipy's cost is down to `target`, or until `limit` seconds are over, and the cost it reached."""
+def scipys(
+    prepared: Prepared,
+    target: float,
+    limit: float,
+    *,
+    scaled: bool,
+    told: Callable[[float], None] = lambda _: None,
+) -> tuple[float, float]:
+    """Seconds until scipy's cost is down to `target`, or until `limit` seconds are over, and the cost it reached.
+
+    Whoever is `told` hears of every lowest cost.
+    """
     shape = prepared.start.shape
     began = time.perf_counter()
     lowest = np.inf
@@ -105,6 +116,7 @@ def scipys(prepared: Prepared, target: float, limit: float, *, scaled: bool) -> 
         rows = rows_at(flat)
         values = np.concatenate([row.residual.reshape(-1) for row in rows])
         lowest = min(lowest, 0.5 * float(values @ values))
+        told(lowest)
         if lowest <= target or time.perf_counter() - began > limit:
             raise _ReachedError
         return values

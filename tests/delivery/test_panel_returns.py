@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,17 +15,20 @@ from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.earlier import with_earlier
 from cadpanel.delivery.panel_returns import returned
-from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import PanelError
+from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.rules.book import rules_of
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.delivered import fitted
-from tests.flat_parts import strip_records
+from tests.fitted_grids import fitted as fitted_grid
+from tests.fitted_grids import gable
+from tests.flat_parts import records_of, strip_records
 from tests.instances import random_polygon
 from tests.shapes import random_panel
 from tests.thorough import cases
@@ -66,31 +70,78 @@ def test_returns_are_part_of_everything_and_proved(tmp_path: Path, ends: str, si
         assert panel.blank.area - was.blank.area == pytest.approx(grown * length, rel=0.02)
 
 
-def test_panels_and_sides_without_a_return_say_why() -> None:
+def test_edges_without_a_return_say_why() -> None:
     sheet = SheetSettings()
-    flat = random_panel(1, chain="plane-cone-plane")
-    assert returned(flat, (), sheet, ShopSettings()).shape is flat
-    both = returned(flat, (), sheet, SHOP)
-    assert (both.sides, both.notes) == (("side 0", "side 1"), ())
-    one = returned(flat, {"side 1", "end 0"}, sheet, SHOP)
-    assert (one.sides, one.notes) == (("side 0",), ("It has no return along side 1, which meets a neighbour.",))
-    rolled = returned(random_panel(1, chain="plane-cone"), (), sheet, SHOP)
-    assert (rolled.sides, rolled.notes) == (("side 0",), ("It has no return along side 1, which is rolled round.",))
-    polygon = returned(random_polygon(1, 5), (), sheet, SHOP)
-    assert (polygon.sides, polygon.notes) == ((), ("It has no returns: only panels with two sides have.",))
+    bent = random_panel(1, chain="plane-cone-plane")
+    assert returned(bent, sheet, ShopSettings()).shape is bent
+    curved = tuple(f"It has no return along end {end}, which is curved." for end in (0, 1))
+    both = returned(bent, sheet, SHOP)
+    assert (both.edges, both.notes) == (("side 0", "side 1"), curved)
+    rolled = returned(random_panel(1, chain="plane-cone"), sheet, SHOP)
+    assert rolled.edges == ("side 0",)
+    assert rolled.notes == ("It has no return along side 1, which is rolled round.", *curved)
+    flat = returned(random_panel(1, chain="plane"), sheet, SHOP)
+    assert (set(flat.edges), flat.notes, flat.tray) == ({"end 0", "end 1", "side 0", "side 1"}, (), (30.0, 2.5))
+    polygon = returned(random_polygon(1, 5), sheet, SHOP)
+    assert (polygon.edges, polygon.notes) == (tuple(f"edge {edge}" for edge in range(5)), ())
     with pytest.raises(PanelError, match="ask for one of at least"):
-        returned(flat, (), sheet, ShopSettings(returns=(6.0, 2.5)))
+        returned(bent, sheet, ShopSettings(returns=(6.0, 2.5)))
 
 
-def test_a_return_that_is_missing_too_long_or_too_round_is_seen(tmp_path: Path) -> None:
-    report: ReportModel = deliver(fitted(), tmp_path / "out", SheetSettings(), SHOP)
-    _, _, parts = strip_records()
-    contents = Contents(
-        title="t", sheet=SheetSettings(), shop=SHOP, records=report.panels, seams=report.seams, parts=parts
-    )
+def fitted_gable() -> FitResult:
+    """A folded panel whose flange meets a flat pentagon."""
+    book = rules_of({"feature": [{"panels": ["panel 2"], "feature": "planar-polygon"}]})
+    return fit(gable(0.5), FitSettings(feature="plane-cone-plane", rules=book))
+
+
+def fitted_quadrilaterals() -> FitResult:
+    """Nine flat panels with ends and sides."""
+    found: FitResult = fitted_grid("planar-quadrilateral")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("of", "ends", "side"),
+    cases(
+        [(fitted_gable, "square", "outer")],
+        [(fitted_gable, "bevel", "inner"), (fitted_quadrilaterals, "bevel", "outer")],
+    ),
+)
+def test_returns_at_seams_and_round_flat_panels_keep_joints_as_wide_as_asked(
+    tmp_path: Path, of: Callable[[], FitResult], ends: str, side: SkinSide
+) -> None:
+    sheet = SheetSettings(ends=ends, skin_side=side, joint=12.0)  # type: ignore[arg-type]
+    report = deliver(of(), tmp_path / "out", sheet, SHOP)
+    assert report.certificate.failures == ()
+    assert report.certificate.overlap == 0.0
+    assert report.certificate.clear is not None
+    assert report.certificate.clear.least >= 12.0 - 1e-6
+    for panel in report.panels:
+        flat = len(panel.patches) == 1
+        assert panel.tray == (SHOP.returns if flat else None)
+        assert len(panel.returns) == (len(panel.other_face[0]) * len(panel.other_face) if flat else 2)
+    assert verify(tmp_path / "out").holds
+
+
+def test_a_flat_panel_that_is_not_folded_as_asked_is_seen() -> None:
+    (_, record), _, parts = records_of(fitted_gable(), SHOP)
+    contents = Contents(title="t", sheet=SheetSettings(), shop=SHOP, records=(record,), seams=(), parts=parts[1:])
+    assert return_faults(contents) == ()
+    for change, said in (
+        ({"tray": (31.0, 2.5)}, "returns are 31 mm long"),
+        ({"returns": record.returns[1:]}, f"its {record.returns[0]} has no return"),
+        ({"returns": (), "tray": None}, "has no return, and nothing is in its way"),
+    ):
+        assert said in " ".join(return_faults(replace(contents, records=(record.model_copy(update=change),))))
+    assert "not asked for" in " ".join(return_faults(replace(contents, shop=replace(SHOP, returns=None))))
+
+
+def test_a_return_that_is_missing_too_long_or_too_round_is_seen() -> None:
+    records, seams, parts = strip_records(SHOP)
+    contents = Contents(title="t", sheet=SheetSettings(), shop=SHOP, records=records, seams=seams, parts=parts)
     assert return_faults(contents) == ()
     assert "its side 0 has no return" in " ".join(
-        return_faults(replace(contents, records=(report.panels[0].model_copy(update={"returns": ("side 1",)}),)))
+        return_faults(replace(contents, records=(records[0].model_copy(update={"returns": ("side 1",)}),)))
     )
     for returns, said in (
         ((31.0, 2.5), "has a return of 30 mm, 31 mm were asked for"),

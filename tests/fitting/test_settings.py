@@ -14,7 +14,7 @@ from cadpanel.terms.limits.catalogue import LIMITS
 
 ASKED = [limit for limit in LIMITS if limit.asked]
 EMPTY = ("gap_tolerance", "joint_tolerance", "step", "shift")
-NUMBERS = (*EMPTY, *(limit.name for limit in ASKED), "restarts", "seed")
+NUMBERS = (*EMPTY, *(limit.name for limit in ASKED), "restarts", "seed", "energy", "tau")
 
 
 @pytest.mark.parametrize("name", NUMBERS)
@@ -29,7 +29,7 @@ def test_numbers_that_are_none_infinite_or_negative_are_refused(name, value):
 @pytest.mark.parametrize("value", ["1", None, [1.0], 1j])
 def test_what_is_no_number_is_refused_by_the_settings_name(name, value):
     how: dict[str, Any] = {name: value}
-    if value is None and name in EMPTY:
+    if value is None and name in (*EMPTY, "energy"):
         assert getattr(FitSettings(**how), name) is None
         return
     with pytest.raises(SettingsError, match=r"must be a (whole )?number, not"):
@@ -65,6 +65,8 @@ def test_weights_that_no_double_can_hold_together_are_refused(name, value):
         *((limit.name, limit.least, None if math.isinf(limit.most) else limit.most) for limit in ASKED),
         ("restarts", 0, 1000),
         ("seed", 0, None),
+        ("energy", 0.0, None),
+        ("tau", 1e-12, 1e3),
     ],
 )
 def test_numbers_may_be_at_the_ends_of_their_ranges_but_not_beyond(name, least, most):
@@ -95,7 +97,7 @@ def test_a_gap_may_weigh_nothing_but_deviation_and_drift_may_not():
             Weights(**how)
 
 
-@pytest.mark.parametrize(("name", "value"), [("method", "annealing"), ("tilt", "loose"), ("feature", "sphere")])
+@pytest.mark.parametrize(("name", "value"), [("method", "magic"), ("tilt", "loose"), ("feature", "sphere")])
 def test_words_that_are_not_known_are_refused_with_those_that_are(name, value):
     how: dict[str, Any] = {name: value}
     with pytest.raises(SettingsError, match=r"concurrent|free|plane-cone-plane"):

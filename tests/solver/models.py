@@ -137,14 +137,18 @@ class HeldTargets:
         """See `solver.HeldModel.vectors`."""
         return tuple(batch.vectors(unknowns) for batch in self.held)
 
+    def cost(self, unknowns: Array) -> tuple[Array, tuple[Array, ...]]:
+        """See `solver.HeldModel.cost`."""
+        return 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1), self.vectors(unknowns)
+
     def at(self, unknowns: Array) -> Point:
         """See `solver.HeldModel.at`; the model is exact."""
         count, size = unknowns.shape
         normal = Normal.zero(count, size, len(self.pattern.pairs))
         normal.gradient += unknowns - self.targets
         normal.diagonal += np.eye(size)
-        cost = 0.5 * np.sum((unknowns - self.targets) ** 2, axis=1)
-        return Point(unknowns, cost, normal, self.vectors(unknowns), tuple(batch.jacobians() for batch in self.held))
+        cost, vectors = self.cost(unknowns)
+        return Point(unknowns, cost, normal, vectors, tuple(batch.jacobians() for batch in self.held))
 
 
 def held_points(targets: Array, centres: Array, radius: Array, **how: Any) -> HeldTargets:

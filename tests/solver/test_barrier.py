@@ -5,29 +5,37 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.solver.barrier import Barrier
+from cadpanel.solver.barrier import Barriers
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.central_path import central_weight
+from cadpanel.solver.held_rows import HeldRows, Rowed
 from cadpanel.solver.hold import Hold
 from tests.solver.models import HeldBatch
 
 few = settings(max_examples=15)
 seeds = st.integers(0, 2**32 - 1)
 MU, MOST = 0.05, 7.0
-EVERYWHERE = np.ones((2, 1), dtype=bool)
+EVERYWHERE = np.ones(4, dtype=bool)
 
 
-def case(seed: int, *, one_sided: bool = False, weight: float = 0.3) -> tuple[Barrier, HeldBatch, np.ndarray]:
-    """A barrier of vectors between three points, on its central path there."""
+def case(
+    seed: int, *, one_sided: bool = False, weight: float = 0.3, ties: float = 1.0
+) -> tuple[Barriers, HeldBatch, np.ndarray]:
+    """A barrier of four vectors between three points, on its central path there."""
     random = np.random.default_rng(seed)
     size = 1 if one_sided else 3
-    hold = Hold(random.uniform(0.5, 2.0, (2, 2)), weight=weight, one_sided=one_sided, gives_way=True)
+    hold = Hold(random.uniform(0.5, 2.0, (2, 2)), weight=weight, one_sided=one_sided, gives_way=True, ties=ties)
     first = np.arange(2)
     batch = HeldBatch(hold, random.normal(size=(2, 2, size)), (first, first + 1), first)
     at = random.normal(size=(3, size))
-    barrier = Barrier(batch, most=MOST, ease=1.0)
-    barrier.weight = central_weight(barrier.numbers(batch.vectors(at)), MU, barrier.most)
+    barrier = Barriers(HeldRows.of_batches([batch], [batch.vectors(at)], 3, 2), most=MOST, ease=1.0)
+    barrier.weight = central_weight(barrier.numbers(rowed(barrier, batch, at)), MU, barrier.most)
     return barrier, batch, at
+
+
+def rowed(barrier: Barriers, batch: HeldBatch, at: np.ndarray) -> Rowed:
+    """The vectors at unknowns."""
+    return barrier.held.measured([batch.vectors(at)])
 
 
 @few
@@ -35,12 +43,12 @@ def case(seed: int, *, one_sided: bool = False, weight: float = 0.3) -> tuple[Ba
 def test_on_the_central_path_the_gradient_is_the_slope_of_the_penalties(seed, one_sided):
     barrier, batch, at = case(seed, one_sided=one_sided)
     normal = Normal.zero(3, at.shape[1], 2)
-    barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    barrier.add_to(normal, rowed(barrier, batch, at), [batch.jacobians()], MU, np.zeros(3))
     numeric = np.zeros_like(at)
     for k in np.ndindex(at.shape):
         step = np.zeros_like(at)
         step[k] = 1e-6
-        ahead, behind = (barrier.cost(batch.vectors(at + side * step), MU).sum() for side in (1.0, -1.0))
+        ahead, behind = (barrier.cost(rowed(barrier, batch, at + side * step), MU).sum() for side in (1.0, -1.0))
         numeric[k] = (ahead - behind) / 2e-6
     assert normal.gradient == pytest.approx(numeric, rel=1e-5, abs=1e-7)
 
@@ -51,13 +59,13 @@ def test_the_matrix_is_that_of_the_penalties_where_vectors_follow_unknowns_evenl
     """Then nothing is left out: Newton's own matrix."""
     barrier, batch, at = case(seed)
     normal = Normal.zero(3, 3, 2)
-    barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    barrier.add_to(normal, rowed(barrier, batch, at), [batch.jacobians()], MU, np.zeros(3))
     along = np.random.default_rng(seed + 1).normal(size=at.shape)
 
     def slope(where: np.ndarray) -> np.ndarray:
         there = Normal.zero(3, 3, 2)
-        barrier.weight = central_weight(barrier.numbers(batch.vectors(where)), MU, barrier.most)
-        barrier.add_to(there, batch.vectors(where), batch.jacobians(), MU, np.zeros(3))
+        barrier.weight = central_weight(barrier.numbers(rowed(barrier, batch, where)), MU, barrier.most)
+        barrier.add_to(there, rowed(barrier, batch, where), [batch.jacobians()], MU, np.zeros(3))
         return there.gradient
 
     numeric = (slope(at + 1e-6 * along) - slope(at - 1e-6 * along)) / 2e-6
@@ -73,10 +81,10 @@ def test_the_matrix_is_that_of_the_penalties_where_vectors_follow_unknowns_evenl
 def test_a_bend_is_the_gradient_of_rows_whose_vectors_are_off(seed):
     barrier, batch, at = case(seed, weight=0.0)
     normal = Normal.zero(3, 3, 2)
-    work = barrier.add_to(normal, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    work = barrier.add_to(normal, rowed(barrier, batch, at), [batch.jacobians()], MU, np.zeros(3))
     move = np.random.default_rng(seed + 2).normal(size=at.shape)
     gradient = np.zeros_like(at)
-    barrier.bend(gradient, work, barrier.moved(batch.jacobians(), move))
+    barrier.bend(gradient, work, barrier.moved([batch.jacobians()], move))
     product = np.einsum("bij,bj->bi", normal.diagonal, move)
     for pair in range(2):
         product[pair] += normal.coupling[pair] @ move[pair + 1]
@@ -87,52 +95,56 @@ def test_a_bend_is_the_gradient_of_rows_whose_vectors_are_off(seed):
 def test_distances_narrow_and_never_widen_and_the_pull_stays():
     barrier, batch, at = case(4)
     vectors = 9.0 * batch.vectors(at)
-    barrier.open(vectors, 0.0, 0.8, MU)
+
+    def times(share: float) -> Rowed:
+        return barrier.held.measured([share * vectors])
+
+    barrier.open(times(1.0), 0.0, 0.8, MU)
     wide, pull = barrier.tau.copy(), barrier.weight / barrier.tau
-    assert np.all(wide >= 0.8 * np.linalg.norm(vectors, axis=-1) - 1e-12)
-    barrier.follow(0.5 * vectors, 0.0, 0.8, EVERYWHERE)
+    assert np.all(wide >= 0.8 * np.linalg.norm(vectors, axis=-1).reshape(-1) - 1e-12)
+    barrier.follow(times(0.5), 0.0, 0.8, EVERYWHERE)
     assert np.all(barrier.tau < wide)
     assert barrier.weight / barrier.tau == pytest.approx(pull)
     narrow = barrier.tau.copy()
-    barrier.follow(20.0 * vectors, 0.0, 0.8, EVERYWHERE)
+    barrier.follow(times(20.0), 0.0, 0.8, EVERYWHERE)
     assert np.array_equal(barrier.tau, narrow)
-    barrier.follow(0.0 * vectors, 0.0, 0.8, EVERYWHERE)
-    assert np.array_equal(barrier.tau, batch.hold.radius)
+    barrier.follow(times(0.0), 0.0, 0.8, EVERYWHERE)
+    assert np.array_equal(barrier.tau, batch.hold.radius.reshape(-1))
     assert np.all(barrier.lagging == 1.0)
 
 
 def test_only_what_is_pressed_may_pull_harder():
-    barrier, batch, at = case(5)
-    vectors = batch.vectors(at)
+    barrier, batch, where = case(5)
+    vectors = batch.vectors(where)
     vectors[0] = 3.0 * batch.hold.radius[0][:, None]
     vectors[1] = 0.0
-    barrier.weight = np.full((2, 2), 0.9 * MOST)
-    barrier.raise_most(vectors, np.array([True, True]), 3.0)
-    assert np.array_equal(barrier.most, [[3.0 * MOST] * 2, [MOST] * 2])
-    barrier.raise_most(vectors, np.array([False, False]), 3.0)
-    assert np.array_equal(barrier.most, [[3.0 * MOST] * 2, [MOST] * 2])
+    barrier.weight = np.full(4, 0.9 * MOST)
+    at = barrier.held.measured([vectors])
+    barrier.raise_most(at, EVERYWHERE, 3.0)
+    assert barrier.most.tolist() == [3.0 * MOST] * 2 + [MOST] * 2
+    barrier.raise_most(at, ~EVERYWHERE, 3.0)
+    assert barrier.most.tolist() == [3.0 * MOST] * 2 + [MOST] * 2
 
 
 def test_multipliers_stay_between_nothing_and_the_greatest():
     barrier, batch, at = case(6)
-    work = barrier.add_to(Normal.zero(3, 3, 2), batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
+    work = barrier.add_to(Normal.zero(3, 3, 2), rowed(barrier, batch, at), [batch.jacobians()], MU, np.zeros(3))
     for size in (-1e9, 1e9):
-        barrier.renew(work, size * np.ones((2, 2, 3)) * work.u, np.array([True, True]))
+        barrier.renew(work, size * work.u, EVERYWHERE)
         assert np.all((barrier.weight > 0.0) & (barrier.weight < MOST))
     before = barrier.weight.copy()
-    barrier.renew(work, np.ones((2, 2, 3)), np.array([False, False]))
+    barrier.renew(work, np.ones(12), ~EVERYWHERE)
     assert np.array_equal(barrier.weight, before)
 
 
 @pytest.mark.parametrize("ties", [1.0, 0.25])
 def test_damping_ties_vectors_to_where_they_are(ties):
     """Each block by its own, in the metric of the vectors, and as heavily as they are to be tied."""
-    barrier, batch, at = case(7)
-    batch.hold.ties = ties
+    barrier, batch, at = case(7, ties=ties)
     damping = np.array([0.0, 3.0, 5.0])
     free, damped = Normal.zero(3, 3, 2), Normal.zero(3, 3, 2)
-    barrier.add_to(free, batch.vectors(at), batch.jacobians(), MU, np.zeros(3))
-    barrier.add_to(damped, batch.vectors(at), batch.jacobians(), MU, damping)
+    barrier.add_to(free, rowed(barrier, batch, at), [batch.jacobians()], MU, np.zeros(3))
+    barrier.add_to(damped, rowed(barrier, batch, at), [batch.jacobians()], MU, damping)
     # Two vectors a group, each the difference of two points; a group is damped as its first block is.
     assert damped.coupling - free.coupling == pytest.approx(
         np.array([0.0, -2.0 * 3.0 * ties])[:, None, None] * np.eye(3), abs=1e-9
@@ -142,13 +154,13 @@ def test_damping_ties_vectors_to_where_they_are(ties):
 
 def test_who_goes_on_with_narrower_distances_pulls_as_hard():
     before, batch, at = case(8)
-    before.open(batch.vectors(at), 0.0, 0.8, MU)
+    before.open(rowed(before, batch, at), 0.0, 0.8, MU)
     batch.hold.radius = 0.4 * batch.hold.radius
-    after = Barrier(batch, most=1.0, ease=1.0)
+    after = Barriers(before.held, most=1.0, ease=1.0)
     after.resume(before)
     assert after.weight / after.tau == pytest.approx(before.weight / before.tau)
     assert np.array_equal(after.most, before.most)
     numbers, batch, at = case(9, one_sided=True)
-    after = Barrier(batch, most=1.0, ease=1.0)
+    after = Barriers(numbers.held, most=1.0, ease=1.0)
     after.resume(numbers)
     assert np.array_equal(after.weight, numbers.weight)

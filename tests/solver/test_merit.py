@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from cadpanel.solver.barrier import Barrier
+from cadpanel.solver.barrier import Barriers
 from cadpanel.solver.components import Components
+from cadpanel.solver.held_rows import HeldRows
 from cadpanel.solver.merit import Merit
 from tests.solver.models import held_points
 
@@ -15,16 +16,14 @@ TARGETS, CENTRES = np.tile([1.0, 0.0], (3, 1)), np.zeros((3, 2))
 def made():
     model = held_points(TARGETS, CENTRES, np.full(3, 0.5))
     blocks = Components.of(model.pattern)
-    of = [blocks.seen_by(one.blocks[0]) for one in model.held]
-    barriers = [Barrier(one, most=1.0, ease=1.0) for one in model.held]
-    return model, Merit(model, blocks, of), barriers
+    held = HeldRows.of_batches(model.held, model.at(CENTRES).vectors, 3, 0)
+    return Merit(model, blocks, held), Barriers(held, most=1.0, ease=1.0)
 
 
 def taken(start, step, *, goes_on=(True, True, True)):
-    model, merit, barriers = made()
+    merit, barriers = made()
     how = {"barriers": barriers, "mu": np.full(3, 0.01), "goes_on": np.array(goes_on), "least": np.zeros(3)}
-    point = model.at(np.array(start, dtype=float))
-    return merit.take(point, np.array(step, dtype=float), np.full(3, 0.01), **how)
+    return merit.take(merit.at(np.array(start, dtype=float)), np.array(step, dtype=float), np.full(3, 0.01), **how)
 
 
 def test_a_step_is_taken_where_it_helps_and_not_where_it_harms():
@@ -34,7 +33,7 @@ def test_a_step_is_taken_where_it_helps_and_not_where_it_harms():
     assert found.blocks.tolist() == [True, False, False]
     assert found.failed.tolist() == [False, True, True]
     assert found.gain[0] > 0.0 > max(found.gain[1:])
-    assert found.point.unknowns == pytest.approx(np.array([[0.3, 0.0], [0.1, 0.0], [0.1, 0.0]]), abs=1e-15)
+    assert found.place.point.unknowns == pytest.approx(np.array([[0.3, 0.0], [0.1, 0.0], [0.1, 0.0]]), abs=1e-15)
 
 
 def test_what_is_at_rest_never_fails():
@@ -42,10 +41,10 @@ def test_what_is_at_rest_never_fails():
 
 
 def test_a_point_is_worth_its_excess_and_its_free_cost():
-    model, merit, barriers = made()
-    point = model.at(np.array([[0.25, 0.0], [0.5, 0.0], [1.0, 0.0]]))
-    worth = merit.worth(point, barriers)
+    merit, barriers = made()
+    place = merit.at(np.array([[0.25, 0.0], [0.5, 0.0], [1.0, 0.0]]))
+    worth = merit.worth(place, barriers)
     assert np.maximum(worth.firm, worth.excess) == pytest.approx([0.5, 1.0, 2.0], rel=1e-12)
-    assert merit.free_cost(point) == pytest.approx(0.5 * np.array([0.75, 0.5, 0.0]) ** 2, abs=1e-12)
+    assert merit.free_cost(place) == pytest.approx(0.5 * np.array([0.75, 0.5, 0.0]) ** 2, abs=1e-12)
     # Where nothing is held the penalty is what is left.
-    assert np.all(np.diff(merit.penalized(point, barriers, np.full(3, 0.01)) - point.cost) > 0.0)
+    assert np.all(np.diff(merit.penalized(place, barriers, np.full(3, 0.01)) - place.point.cost) > 0.0)

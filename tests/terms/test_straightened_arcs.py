@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cadpanel.terms.arc_gap import ArcGap
 from tests.chains import FEATURES, made_problem, mixed_unknowns
 
 STEP = 1e-5
@@ -16,16 +17,15 @@ def test_straightened_vectors_are_as_long_as_the_way_to_where_cone_and_cut_meet(
     problem = made_problem(FEATURES["plane-cone-plane"], seed, panels=2)
     state = problem.state(mixed_unknowns(problem.layout, seed))
     (arcs,) = problem.curve_gaps(1.0)
-    assert hasattr(arcs, "straighten")
+    assert isinstance(arcs, ArcGap)
     place, distances, slopes = problem.place, arcs.vectors(state), []
     for axis in np.eye(3):
         moved = []
         for side in (STEP, -STEP):
             shift = np.outer([1.0, 0.0], side * place.length * axis)
-            arcs.place = replace(place, origins=place.origins + shift)
-            moved.append(arcs.vectors(state))
+            there = replace(place, origins=place.origins + shift)
+            moved.append(ArcGap(arcs.seams, there, problem.layout, tolerance=1.0).vectors(state))
         slopes.append((moved[0] - moved[1]) / (2.0 * STEP))
-    arcs.place = place
     arcs.straighten(state)
     # (seams, points, 2, 3): the cone's normal and the cut plane's.
     rates = np.stack(slopes, axis=-1)

@@ -56,7 +56,7 @@ def test_distances_and_their_inner_derivatives_are_those_of_the_patches(seed):
     for group, walked in zip(case.problem.layout.groups, state.walks, strict=True):
         for patch in range(len(group.feature.patches)):
             which = np.full((len(group.panels), x.shape[1]), patch)
-            found = state.surfaces.distance(x[group.panels], group.panels, which)
+            found = state.surfaces.distance_inner(x[group.panels], group.panels, which)
             own = patch_distance_inner(walked, np.moveaxis(x[group.panels], 2, 0), patch)
             for one, other in zip(found, own, strict=True):
                 assert one == pytest.approx(other, abs=1e-13)

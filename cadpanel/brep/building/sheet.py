@@ -16,10 +16,12 @@ from cadpanel.brep.building.holes import drilled
 from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.building.polygon_sheet import polygon_sheet, polygon_skin
 from cadpanel.brep.building.sheet_faces import SheetFaces
+from cadpanel.brep.building.tray_sheet import tray_sheet, tray_skin
 from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, other_face, sheet_depth
+from cadpanel.geometry.trays import TrayShape
 
 _BUILDER = BRep_Builder()
 
@@ -111,6 +113,8 @@ skin_faces.register(PanelShape, chain_skin)
 skin_faces.register(PolygonShape, polygon_skin)
 sheet_faces.register(PanelShape, chain_sheet)
 sheet_faces.register(PolygonShape, polygon_sheet)
+skin_faces.register(TrayShape, tray_skin)
+sheet_faces.register(TrayShape, tray_sheet)
 
 
 def _solid_of(faces: Sequence[TopoDS_Face]) -> TopoDS_Solid:

@@ -16,7 +16,7 @@ from typing import Literal
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 
-Work = Literal["panels", "survey"]
+Work = Literal["panels", "survey", "rails"]
 
 SECONDS_TO_READ = 120.0
 """Time allowed for reading any file, the start of the interpreter included."""
@@ -27,7 +27,7 @@ SECONDS_TO_WORK = 3600.0
 DAMAGED = "it is damaged or far too large; export it again, with fewer faces"
 REPAIR = "it is damaged; repair the reference and export it again"
 WORKED_ON = "repair it where it was modelled, cut it into fewer panels, or cut it another way"
-DOING: dict[Work, str] = {"panels": "cutting", "survey": "measuring"}
+DOING: dict[Work, str] = {"panels": "cutting", "survey": "measuring", "rails": "converting"}
 HEADER = struct.Struct("<Q")
 NEXT_STAGE = HEADER.pack(0)
 

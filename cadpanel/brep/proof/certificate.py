@@ -247,7 +247,7 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
     """Everything about one skin but its tangency; returns how far its farthest corner is from the expected one."""
     found, wanted = Counter(facts.face_kinds), Counter[str](panel.kinds)
     shared, alone = len(facts.straight_edges), (facts.shells, facts.solids) == (1, 0)
-    corners = panel.corners.reshape(-1, 3)
+    corners = panel.vertices
     error = max(_farthest(corners, facts.vertices), _farthest(facts.vertices, corners))
     problems = {
         f"holds {facts.shells} shells and {facts.solids} solids instead of one shell": not alone,

@@ -104,6 +104,9 @@ def _faults(seam: ExpectedSeam, clear: Clear, joint: float) -> list[str]:
 
 def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     """The face of a sheet at one edge: of the planes on which all of the edge lies, the one that leaves the skin."""
+    standing = _standing(panel, edge)
+    if standing is not None:
+        return _wall_in(solid, *standing)
     corners = panel.corners
     chosen = edge_pieces(solid, corners, edge)
     if chosen is None:
@@ -119,6 +122,28 @@ def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     place = int(np.argmax(leaves))
     surface = solid.surfaces[flat[place]]
     return _Wall(solid.pieces.take(bounds[place]), surface[:3], surface[8] * surface[3:6])
+
+
+def _standing(panel: ExpectedPanel, edge: str) -> tuple[Array, Array] | None:
+    """A point on and the normal of the plane in which the outer face of a return stands; None where there is none."""
+    if panel.tray is not None:
+        return panel.tray.wall(edge)
+    if panel.sheet is None or not edge.startswith("side") or not panel.folded[int(edge[-1])]:
+        return None
+    outer = panel.sheet.shape.offset(0.0 if panel.sheet.skin_side == "outer" else panel.sheet.thickness)
+    points, _, normals = outer.rulings()
+    return points[-int(edge[-1])], normals[-int(edge[-1])]
+
+
+def _wall_in(solid: ShapeFacts, point: Array, normal: Array) -> _Wall | None:
+    """The face of a sheet that stands in a plane and looks along its normal."""
+    flat = np.flatnonzero(solid.surfaces[:, 6] == 0.0)
+    normals = solid.surfaces[flat, 8:9] * solid.surfaces[flat, 3:6]
+    off = np.abs((solid.surfaces[flat, :3] - point) @ normal)
+    there = flat[(off <= CLEAR_LIMIT) & (np.linalg.norm(normals - normal, axis=-1) <= CLEAR_LIMIT)]
+    if not len(there):
+        return None
+    return _Wall(solid.pieces.take(np.any([solid.bounds(face) for face in there], axis=0)), point, normal)
 
 
 def _walls_of_pieces(solid: ShapeFacts, corners: Array, chosen: IntArray) -> _Wall:

@@ -14,6 +14,7 @@ from cadpanel.brep.step.properties import PartData
 from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
+from cadpanel.geometry.trays import TrayShape
 
 PatchKind = Literal["plane", "cone", "cylinder"]
 
@@ -59,6 +60,8 @@ class ExpectedPanel:
             nor round then.
         holes: through its sheet; None where it has none.
         folded: patches beyond the fit's at side 0 and at side 1: those of returns.
+        tray: where it is a flat panel with folded edges, the panel; its kinds are those of all its faces, its corners
+            where the planes of its walls meet.
         sheet: what both files hold of it, to be built anew; None to leave that alone.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
@@ -77,7 +80,13 @@ class ExpectedPanel:
     square: bool = False
     holes: ExpectedHoles | None = None
     folded: tuple[int, int] = (0, 0)
+    tray: TrayShape | None = None
     sheet: Sheet | None = None
+
+    @property
+    def vertices(self) -> Array:
+        """(v, 3) of its skin, mm."""
+        return self.corners.reshape(-1, 3) if self.tray is None else self.tray.vertices()
 
     @property
     def walls(self) -> tuple[str, ...]:
@@ -87,10 +96,13 @@ class ExpectedPanel:
     @property
     def smooth_edges(self) -> int:
         """Straight edges of its solid whose two faces are tangent: between patches, and in holes."""
-        return 2 * len(self.kinds) - 2 + (0 if self.holes is None else self.holes.smooth_edges)
+        own = 2 * len(self.kinds) - 2 if self.tray is None else self.tray.plan.seams
+        return own + (0 if self.holes is None else self.holes.smooth_edges)
 
     @property
     def _outer_walls(self) -> tuple[str, ...]:
+        if self.tray is not None:
+            return self.tray.plan.wall_kinds
         if len(self.corners) == 1:
             return int(self.corners.shape[1]) * ("plane",)
         if not self.square:

@@ -18,6 +18,8 @@ from cadpanel.arrays import Array
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.geometry.curve_pieces import CurvePieces
+from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.trays import TrayShape
 
 AREA_LIMIT = 1e-9
 """Relative difference between a flat pattern's area and that of the surface that it unrolls."""
@@ -36,12 +38,14 @@ class ExpectedFlat:
         share: where the surface that it unrolls lies, from the skin into the sheet, a part of the thickness.
         depth: the thickness, negative where the sheet lies against the skin's normals, mm.
         skin_pieces: lengths of all pieces of the skin's own outline, unrolled, mm.
+        tray: the panel, where it is a flat one with folded edges.
     """
 
     area: float
     share: float
     depth: float
     skin_pieces: Array
+    tray: TrayShape | None = None
 
 
 class FlatFacts(NamedTuple):
@@ -93,6 +97,8 @@ def _main_faces(panel: FlatFacts, depth: float) -> Array:
     Square walls at the ends of round patches are neither planes nor round; holes through flat patches are as wide as
     they are asked for.
     """
+    if panel.expected.tray is not None:
+        return _faces_of_tray(panel.expected.tray, panel.solid.surfaces, depth)
     solid, normals, points = panel.solid, panel.far_planes[:, 1], panel.far_planes[:, 0]
     flat, known = (solid.surfaces[:, 6:8] == 0.0).all(axis=1), np.isfinite(solid.surfaces[:, 6])
     turned = np.linalg.norm(np.cross(solid.surfaces[:, None, 3:6], normals), axis=-1) <= _SAME_PLANE
@@ -102,6 +108,21 @@ def _main_faces(panel: FlatFacts, depth: float) -> Array:
     if panel.holes is not None:
         drilled = (np.abs(solid.surfaces[:, 6] - 0.5 * panel.holes.diameter) <= _SAME_PLANE) & turned.any(axis=-1)
     return np.asarray(~drilled & ((known & ~flat) | (turned & level).any(axis=-1)))
+
+
+def _faces_of_tray(tray: TrayShape, surfaces: Array, depth: float) -> Array:
+    """(f,) which faces lie on the skin of a folded flat panel, or on the parallel one at a depth."""
+    found = np.zeros(len(surfaces), dtype=bool)
+    for level in (tray, tray.offset(depth)):
+        points, ways = level.surfaces()
+        radii = np.array([patch.radius if isinstance(patch, ConePatch) else 0.0 for patch in level.patches])
+        offset = surfaces[:, None, :3] - points
+        along = np.einsum("fpx,px->fp", offset, ways)
+        beside = np.linalg.norm(offset - along[..., None] * ways, axis=-1)
+        turned = np.linalg.norm(np.cross(surfaces[:, None, 3:6], ways), axis=-1) <= _SAME_PLANE
+        level_off = np.where(radii > 0.0, beside, np.abs(along)) <= _SAME_PLANE
+        found |= (turned & level_off & (np.abs(surfaces[:, 6:7] - radii) <= _SAME_PLANE)).any(axis=-1)
+    return np.asarray(found)
 
 
 def _lengths(border: CurvePieces) -> Array:

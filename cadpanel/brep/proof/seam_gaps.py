@@ -60,6 +60,8 @@ def seam_gaps(
 
 def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePieces | None:
     """The edge as the fit has it, on the faces in the file; None unless they go on to it."""
+    if panel.fitted is not None and _is_folded(panel, edge):
+        return _before_folding(skin, edge_corners(panel.fitted.corners, edge))
     chosen = edge_pieces(skin, panel.corners, edge)
     if chosen is not None and edge.startswith("end"):
         chosen = chosen[panel.folded[0] : len(chosen) - panel.folded[1]]
@@ -76,6 +78,18 @@ def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePiec
     ]
     known = [piece for piece in pieces if piece is not None]
     return together(known) if len(known) == len(pieces) else None
+
+
+def _is_folded(panel: ExpectedPanel, edge: str) -> bool:
+    """Whether an edge of the fit lies where the skin is folded now; of a flat panel with returns any may."""
+    return panel.tray is not None or (edge.startswith("side") and panel.folded[int(edge[-1])] > 0)
+
+
+def _before_folding(skin: ShapeFacts, corners: Array) -> CurvePieces | None:
+    """The straight edge between two corners that lie in one flat face of the skin as it goes on; else None."""
+    flat = skin.surfaces[skin.surfaces[:, 6] == 0.0]
+    on_one = any(max(off_surface(surface, corner) for corner in corners) <= ON_SURFACE for surface in flat)
+    return segments(corners[:1], corners[1:]) if on_one else None
 
 
 def _piece_on(surface: Array, first: Array, last: Array, cut: Array | None, *, bent: bool) -> CurvePieces | None:

@@ -24,7 +24,9 @@ from cadpanel.delivery.document.archive import DOCUMENT_XML, GUI_XML, xml_files
 from cadpanel.delivery.document.shapes import laid_out
 from cadpanel.delivery.document.tree import drawn_seams, flat_file, panel_file, seam_file, skin_file
 from cadpanel.delivery.records.report import PanelModel, SeamModel
+from cadpanel.delivery.records.to_shape import sheet_corners, tray_of
 from cadpanel.errors import DeliveryError
+from cadpanel.geometry.sheet_checks import sheet_depth
 
 # Of a flat pattern's area, where arcs in its contour come as close as the chord allows: rounding.
 _AREA_SHARE = 1e-9
@@ -40,6 +42,7 @@ def prove_document(path: Path, contents: Contents) -> Proof:
     """
     failures = [f"'{path.name}': {what}" for what in _text_faults(path, contents)]
     facts = inspect_archive(path)
+    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
     volumes, corners = 0.0, 0.0
     for place, (panel, part) in enumerate(zip(contents.records, contents.parts, strict=True)):
         files = (panel_file(place), skin_file(place), flat_file(place))
@@ -48,7 +51,7 @@ def prove_document(path: Path, contents: Contents) -> Proof:
             continue
         solid, skin, flat = (facts[file] for file in files)
         volumes = max(volumes, abs(solid.volume / panel.volume - 1.0), abs(skin.area / panel.area - 1.0))
-        near, far = _points(panel.corners), _points(panel.other_face)
+        near, far = sheet_corners(panel, depth)
         # A solid may have vertices elsewhere, too, round whatever is drilled into it; its volume tells of that.
         off = _off(np.concatenate([near, far]), solid.vertices), _apart(skin.vertices, near)
         corners = max(corners, *off)
@@ -113,11 +116,12 @@ def _hole_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator
 
 def _seam_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator[str]:
     panels = {panel.name: panel for panel in contents.records}
+    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
     for place, seam in enumerate(drawn_seams(contents)):
         of = f"the seam of '{seam.panels[0]}' and '{seam.panels[1]}'"
         kept = facts.get(seam_file(place))
         try:
-            rows = list(_rows(seam, panels))
+            rows = list(_rows(seam, panels, depth))
         except ValueError as error:
             yield f"{of} is not where the report says it: {error}."
             continue
@@ -127,10 +131,11 @@ def _seam_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator
             yield f"{of} is not drawn where the two panels end."
 
 
-def _rows(seam: SeamModel, panels: Mapping[str, PanelModel]) -> Iterator[Array]:
+def _rows(seam: SeamModel, panels: Mapping[str, PanelModel], depth: float) -> Iterator[Array]:
     for name, edge in zip(seam.panels, seam.edges, strict=True):
         if name in panels:
-            yield edge_row(panels[name], edge)
+            tray = tray_of(panels[name], depth)
+            yield edge_row(panels[name], edge) if tray is None else tray.edge(edge).corners
 
 
 def edge_row(panel: PanelModel, edge: str) -> Array:
@@ -149,10 +154,6 @@ def edge_row(panel: PanelModel, edge: str) -> Array:
     if word == "side":
         return np.asarray(corners[:, -place])
     return np.asarray(corners[0, [place, (place + 1) % corners.shape[1]]])
-
-
-def _points(rows: tuple[tuple[tuple[float, float, float], ...], ...]) -> Array:
-    return np.reshape(np.array(rows), (-1, 3))
 
 
 def _apart(found: Array, wanted: Array) -> float:

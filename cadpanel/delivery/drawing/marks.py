@@ -38,7 +38,7 @@ def marks(part: FlatPart, neighbours: Mapping[str, str], layer: str) -> list[Ent
     ]
     if any(edge.startswith("end") for edge in pattern.edges):
         found += _arrow(layer, middle - [0.0, 2.2 * height], 2.0 * height)
-    for edge in dict.fromkeys(pattern.edges):
+    for edge in part.size.edges:
         words = ": ".join(word for word in (_named(edge), neighbours.get(edge, "")) if word)
         if words:
             found.append(_along_edge(part, edge, words, small, layer))

@@ -11,6 +11,8 @@ from scipy.spatial import cKDTree
 from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.records.report import PanelModel
+from cadpanel.delivery.records.to_shape import sheet_corners
+from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.geometry.triangles import Triangles, is_closed, merged
 
 TOGETHER = 0.01
@@ -44,13 +46,14 @@ def prove_meshes(file: str, found: Sequence[ReadMesh], contents: Contents, origi
     failures = [
         f"'{file}': the mesh of panel '{mesh.name}' {what}."
         for mesh, panel in zip(found, contents.records, strict=True)
-        for what in _faults(mesh, panel, contents.shop.mesh_chord, origin)
+        for what in _faults(mesh, panel, contents, origin)
     ]
     triangles = sum(len(mesh.corners) for mesh in found)
     return Proof(numbers={"panels": len(found), "triangles": triangles}, failures=tuple(failures))
 
 
-def _faults(mesh: ReadMesh, panel: PanelModel, chord: float, origin: Array) -> Iterator[str]:
+def _faults(mesh: ReadMesh, panel: PanelModel, contents: Contents, origin: Array) -> Iterator[str]:
+    chord = contents.shop.mesh_chord
     points, place = merged(mesh.points, TOGETHER)
     if not is_closed(place[mesh.corners]):
         yield "is not closed"
@@ -60,7 +63,8 @@ def _faults(mesh: ReadMesh, panel: PanelModel, chord: float, origin: Array) -> I
     # Every facet lies within the chord of its face, so that between mesh and solid is a layer no thicker than that.
     if not abs(whole.volume() - panel.volume) <= surface * (chord + TOGETHER):
         yield f"encloses {whole.volume():.6g} mm3 instead of {panel.volume:.6g}"
-    corners = np.concatenate([*panel.corners, *panel.other_face]).reshape(-1, 3) + origin
+    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
+    corners = np.concatenate(sheet_corners(panel, depth)) + origin
     apart = float(np.max(cKDTree(points).query(corners)[0]))
     if not apart <= TOGETHER:
         yield f"has a corner {apart:.3g} mm away from where it is expected"

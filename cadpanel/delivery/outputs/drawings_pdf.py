@@ -1,4 +1,4 @@
-"""drawings.pdf: one page a panel for people, and an overview; it needs reportlab, and pypdf to read it back."""
+"""drawings.pdf: an overview and a page a panel; it needs reportlab, matplotlib's fonts, and pypdf to read it back."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class DrawingsPdf(Output):
     name = "pdf"
     files = (DRAWINGS,)
     unasked = False
-    needs = ("reportlab", "pypdf")
+    needs = ("reportlab", "pypdf", "matplotlib")
 
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""

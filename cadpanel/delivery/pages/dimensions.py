@@ -30,7 +30,7 @@ def dimension(paper: Paper, start: Array, stop: Array, away: Array, distance: fl
     words_along(paper, 0.5 * (first + last), along, away, number)
 
 
-def words_along(paper: Paper, place: Array, along: Array, away: Array, words: str) -> None:
+def words_along(paper: Paper, place: Array, along: Array, away: Array, words: str, *, halo: bool = False) -> None:
     """Words beside a place, running along a unit direction (2,), to be read from below or from the right."""
     angle = math.atan2(along[1], along[0])
     # A turn of just under half a circle is told from one of just over it with a margin.
@@ -38,7 +38,7 @@ def words_along(paper: Paper, place: Array, along: Array, away: Array, words: st
         angle -= math.copysign(math.pi, angle)
     up = np.array([-math.sin(angle), math.cos(angle)])
     foot = place + 0.5 * away if float(up @ away) > 0.0 else place + (HEIGHT + 0.5) * away
-    paper.words(words, foot, HEIGHT, anchor="middle", angle=angle)
+    paper.words(words, foot, HEIGHT, anchor="middle", angle=angle, halo=halo)
 
 
 def room_for(words: str) -> float:

@@ -11,6 +11,7 @@ from cadpanel.delivery.drawing.part import bend_lines
 from cadpanel.delivery.pages.dimensions import dimension, room_for, words_along
 from cadpanel.delivery.pages.paper import Box, Paper, standard_scale
 from cadpanel.delivery.records.flat_parts import FlatPart
+from cadpanel.geometry.unroll_trays import of_corner
 
 _ROOM = 26.0
 """Round the part, for its dimensions, mm on paper."""
@@ -44,9 +45,15 @@ def draw_flat(paper: Paper, part: FlatPart, neighbours: Mapping[str, str], box: 
 
 
 def _dimension_pieces(paper: Paper, part: FlatPart, chains: list[Array]) -> None:
-    """The length of every piece of the outline, outside of it; bent ones are measured along the bend."""
+    """The length of every piece of the outline, outside of it; bent ones are measured along the bend.
+
+    Of what belongs to reliefs only how wide each leg is: allowances stand in the table of bends.
+    """
     level = 0
-    for chain, length, curved in zip(chains, part.size.pieces, part.pattern.curves.curved, strict=True):
+    bent, told = part.pattern.curves.curved.tolist(), _told(part)
+    for chain, length, curved, tell in zip(chains, part.size.pieces, bent, told, strict=True):
+        if not tell:
+            continue
         number = f"{length:.1f}"
         span = float(np.linalg.norm(chain[-1] - chain[0]))
         # Beside a short one the next number stands one line farther out.
@@ -55,10 +62,19 @@ def _dimension_pieces(paper: Paper, part: FlatPart, chains: list[Array]) -> None
         if curved:
             middle, ahead = chain[len(chain) // 2], chain[len(chain) // 2 + 1] - chain[len(chain) // 2 - 1]
             along = ahead / np.linalg.norm(ahead)
-            words_along(paper, middle + (distance - _NEAR + 1.0) * _out(along), along, _out(along), number)
+            # Beside the number of a straight one, which stands on its line, not between the two.
+            words_along(paper, middle + (distance if level else 1.0) * _out(along), along, _out(along), number)
         else:
             along = (chain[-1] - chain[0]) / span
             dimension(paper, chain[0], chain[-1], _out(along), distance, number)
+
+
+def _told(part: FlatPart) -> list[bool]:
+    """Which pieces of the outline get a dimension."""
+    edges, owners = part.pattern.edges, part.pattern.owners
+    after = [*range(1, len(edges)), 0]
+    legs = [not of_corner(edges[row]) and owners[row] == owner > 0 for row, owner in zip(after, owners, strict=True)]
+    return [not of_corner(edge) or leg for edge, leg in zip(edges, legs, strict=True)]
 
 
 def _out(along: Array) -> Array:
@@ -77,11 +93,11 @@ def _say(paper: Paper, part: FlatPart, neighbours: Mapping[str, str], chains: li
     """The name, and inside of every edge what it is called and who is met there."""
     paper.words(part.pattern.name, middle, _NAME, anchor="middle", bold=True, halo=True)
     paper.words("this face out", middle - [0.0, 4.5], 2.5, anchor="middle", halo=True)
-    for edge in dict.fromkeys(part.pattern.edges):
+    for edge in part.size.edges:
         rows = [row for row, own in enumerate(part.pattern.edges) if own == edge]
         longest = max(rows, key=lambda row: round(part.size.pieces[row], 6))
         chain = chains[longest]
         middle_of = 0.5 * (chain[0] + chain[-1]) if len(chain) == 2 else chain[len(chain) // 2]
         along = (chain[-1] - chain[0]) / max(float(np.linalg.norm(chain[-1] - chain[0])), 1e-9)
         words = ": ".join(word for word in (edge, neighbours.get(edge, "")) if word)
-        words_along(paper, middle_of - 1.0 * _out(along), along, -_out(along), words)
+        words_along(paper, middle_of - 1.0 * _out(along), along, -_out(along), words, halo=True)

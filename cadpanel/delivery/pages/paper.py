@@ -6,25 +6,18 @@ import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
-import reportlab
-from reportlab.pdfbase.pdfmetrics import registerFont, stringWidth
-from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.pdfgen.canvas import Canvas
 
 from cadpanel.arrays import Array
+from cadpanel.delivery.pages.fonts import load_fonts, runs, width_in_points
 
 WIDTH, HEIGHT = 420.0, 297.0
 MARGIN = 10.0
 POINT = 72.0 / 25.4
 """Points of a printer in a millimetre."""
-REGULAR, BOLD = "Vera", "VeraBd"
-MISSING = "?"
-"""Stands for a sign that the fonts do not have."""
 SCALES = (1, 2, 5, 10, 15, 20, 25, 50, 100, 200, 500, 1000)
 Anchor = Literal["left", "middle", "right"]
 Grey = float
@@ -45,25 +38,9 @@ class Box:
         return np.array([self.left + 0.5 * self.width, self.bottom + 0.5 * self.height])
 
 
-@cache
-def _fonts() -> frozenset[int]:
-    """Load the fonts, which come with the library; the signs that they have."""
-    folder = Path(reportlab.__file__).parent / "fonts"
-    fonts = [TTFont(name, str(folder / f"{name}.ttf")) for name in (REGULAR, BOLD)]
-    for font in fonts:
-        registerFont(font)
-    return frozenset(fonts[0].face.charToGlyph) & frozenset(fonts[1].face.charToGlyph)
-
-
-def shown(words: str) -> str:
-    """Words as the fonts can show them."""
-    known = _fonts()
-    return "".join(sign if ord(sign) in known and sign.isprintable() else MISSING for sign in words)
-
-
 def width_of(words: str, height: float, *, bold: bool = False) -> float:
     """How long words are on paper, mm."""
-    return float(stringWidth(shown(words), BOLD if bold else REGULAR, height * POINT)) / POINT
+    return width_in_points(words, height * POINT, bold=bold) / POINT
 
 
 def standard_scale(size: Array, box: Box) -> float:
@@ -78,7 +55,7 @@ class Paper:
 
     def __init__(self, title: str, author: str) -> None:
         """Begin with an empty page; the file's time is the present, or that of SOURCE_DATE_EPOCH."""
-        _fonts()
+        load_fonts()
         self._stream = io.BytesIO()
         self._canvas = Canvas(self._stream, pagesize=(WIDTH * POINT, HEIGHT * POINT), pageCompression=1)
         self._canvas.setTitle(title)
@@ -126,7 +103,7 @@ class Paper:
         halo: bool = False,
     ) -> None:
         """A line of words at the foot of its letters, turned by an angle in radians; on white if there is a halo."""
-        canvas, text = self._canvas, shown(words)
+        canvas = self._canvas
         back = {"left": 0.0, "middle": 0.5, "right": 1.0}[anchor] * width_of(words, height, bold=bold)
         canvas.saveState()
         canvas.translate(float(place[0]) * POINT, float(place[1]) * POINT)
@@ -138,8 +115,11 @@ class Paper:
                 -(back + 0.3) * POINT, -0.4 * POINT, (long + 0.6) * POINT, (height + 0.4) * POINT, stroke=0, fill=1
             )
         canvas.setFillGray(0.0)
-        canvas.setFont(BOLD if bold else REGULAR, height * POINT)
-        canvas.drawString(-back * POINT, 0.0, text)
+        text = canvas.beginText(-back * POINT, 0.0)
+        for font, signs in runs(words, bold=bold):
+            text.setFont(font, height * POINT)
+            text.textOut(signs)
+        canvas.drawText(text)
         canvas.restoreState()
 
     def _draw(

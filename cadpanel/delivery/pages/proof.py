@@ -8,7 +8,7 @@ from pypdf import PdfReader
 from pypdf.errors import PyPdfError
 
 from cadpanel.delivery.contents import Contents, Proof
-from cadpanel.delivery.pages.paper import shown
+from cadpanel.delivery.pages.fonts import shown
 from cadpanel.delivery.pages.tables import bend_rows, fixing_rows
 from cadpanel.errors import DeliveryError
 

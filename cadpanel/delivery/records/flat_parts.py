@@ -22,6 +22,7 @@ from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.sheet_checks import other_face
 from cadpanel.geometry.smallest_rectangle import Rectangle
+from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.unroll import FlatBend, FlatPattern, neutral_offset, unroll_all
 from cadpanel.geometry.vectors import cross, unit
 
@@ -175,6 +176,10 @@ def press_hits(radius: float, sweep: float, facet_height: float) -> int:
 
 def _end_angles(shape: Panel) -> Array:
     """(2, k) angles by which the edge turns over each patch about the normals of end 0's and end 1's cut, radians."""
+    if isinstance(shape, TrayShape):
+        # Its folds end square to themselves.
+        sweeps = [patch.sweep if isinstance(patch, ConePatch) else 0.0 for patch in shape.patches]
+        return np.array([sweeps, sweeps])
     _, _, normals = shape.rulings()
     _, cut_normals = shape.cuts()
     ways = unit(cross(normals[None], np.broadcast_to(cut_normals[:, None], (2, *normals.shape))))

@@ -155,6 +155,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         patches=patch_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
         returns=built.returns,
+        tray=built.tray,
         moved=built.moved,
         notes=(*built.notes, *_outline_note(measures, index), *_blend_note(reference, built, result.settings.blend)),
     )

@@ -16,11 +16,14 @@ from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, lif
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape
+from cadpanel.geometry.trays import TrayShape
 
 
 @singledispatch
 def patch_models(shape: Panel) -> tuple[PatchModel, ...]:
     """The patches of a panel as it is built, in the order of the walk; one entry for each kind of panel.
+
+    Of a folded flat panel that of its flat part: its edges tell of the others.
 
     Raises:
         TypeError: nobody has said how panels of this kind are recorded.
@@ -45,6 +48,11 @@ def _of_chain(shape: PanelShape) -> tuple[PatchModel, ...]:
     return tuple(models)
 
 
+@patch_models.register
+def _of_tray(shape: TrayShape) -> tuple[PatchModel, ...]:
+    return patch_models(shape.flat)
+
+
 @singledispatch
 def radius_ranges(shape: Panel) -> tuple[Pair | None, ...]:
     """Smallest and largest distance of each patch from its axis, mm; None where it is flat, as all others are."""
@@ -60,6 +68,11 @@ def _of_round_patches(shape: PanelShape) -> tuple[Pair | None, ...]:
         for index, patch in enumerate(shape.patches)
     ]
     return tuple(None if frame is None else _radii(shape, frame) for frame in frames)
+
+
+@radius_ranges.register
+def _of_folds(shape: TrayShape) -> tuple[Pair | None, ...]:
+    return tuple((shape.radius, shape.radius) if isinstance(patch, ConePatch) else None for patch in shape.patches)
 
 
 def fitted_model(shape: Panel) -> FittedModel:

@@ -154,7 +154,10 @@ class PanelModel(Record):
         bevels: of each edge the least and the largest angle between wall and sheet normal, square to the edge; positive
             where the outer face is the shorter one. Along straight edges both are one; 0 where the wall is square.
         fixings: its holes, in the order of the flat pattern's outline.
-        returns: its sides that are folded inwards; each is two patches, a cylinder and a plane beyond it.
+        returns: its edges that are folded inwards; of a panel with bends each is two patches, a cylinder and a plane
+            beyond it.
+        tray: of a flat panel that is folded round its edges, the length of its returns on their outer face and their
+            inner radius, mm. Corners are then where the planes of its walls meet, and the one patch is its flat part.
     """
 
     name: str
@@ -185,6 +188,7 @@ class PanelModel(Record):
     bevels: dict[Edge, Pair] = Field(default_factory=dict)
     fixings: tuple[FixingModel, ...] = ()
     returns: tuple[Edge, ...] = ()
+    tray: Pair | None = None
 
     @model_validator(mode="after")
     def _check_that_corners_enclose_patches(self) -> PanelModel:

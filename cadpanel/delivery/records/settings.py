@@ -18,7 +18,7 @@ from cadpanel.fitting.settings import FitSettings, Method, Weights
 from cadpanel.reference.model import Reference
 from cadpanel.terms.limits.catalogue import LIMITS
 
-OF_A_COLUMN = ("feature", "max_deviation", "method", "rules")
+OF_A_COLUMN = ("feature", "max_deviation", "method", "rules", "energy", "tau")
 """The settings of a fit that a comparison chooses itself, for each column its own, or does without."""
 # Where a record calls a setting by another name.
 _KEYS = {"schema": "step_schema"}
@@ -80,6 +80,7 @@ class SettingsModel(ComparisonSettingsModel):
         composition: the patches of a feature that is not in the catalogue, as the program wrote them; else None.
         max_deviation: mm that no panel may deviate, where features are chosen automatically; else None.
         method: name of the method.
+        energy, tau: of the method annealing, mm2 and mm.
         rules: for single panels and seams, as a file of rules has them; None without any.
         thickness: of the sheet, mm.
         joint: clear width between sheets that was asked for, mm; None in reports from before there was one: then
@@ -108,6 +109,8 @@ class SettingsModel(ComparisonSettingsModel):
     composition: tuple[str, ...] | None = None
     max_deviation: Annotated[float, Field(gt=0.0)] | None = None
     method: Method
+    energy: NonNegative | None = None
+    tau: Annotated[float, Field(gt=0.0)] = 1e-3
     rules: dict[str, Any] | None = None
     thickness: NonNegative
     joint: NonNegative | None = None

@@ -11,7 +11,7 @@ from cadpanel.delivery.records.from_shape import radius_ranges
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel
 from cadpanel.delivery.records.to_shape import unfolded_rulings
-from cadpanel.geometry.shape import PanelShape, PolygonShape
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE
 
 SAME_LENGTH = 1e-5
@@ -22,7 +22,7 @@ SAME_CORNER = 1e-6
 """Distance in mm of a corner from a plane that cuts it."""
 
 
-def shape_faults(record: PanelModel, shape: PanelShape | PolygonShape) -> Iterator[str]:
+def shape_faults(record: PanelModel, shape: Panel) -> Iterator[str]:
     """One sentence for every number of a record that is not the shape's, as `recorded_shape` makes it.
 
     Where that surface is, is proved by the files; here are the numbers that are told of it besides.
@@ -38,7 +38,8 @@ def shape_faults(record: PanelModel, shape: PanelShape | PolygonShape) -> Iterat
             f"{name}: the report says that a slender cone was straightened by {record.moved:.3g} mm, one of its size "
             f"moves by {most:.3g} mm at most."
         )
-    for index, (stated, own) in enumerate(zip(record.patches, radius_ranges(shape), strict=True), start=1):
+    radii_of = radius_ranges(shape)[: len(record.patches)]
+    for index, (stated, own) in enumerate(zip(record.patches, radii_of, strict=True), start=1):
         if isinstance(stated, PlanePatchModel) or own is None:
             continue
         radii = stated.radius_min, stated.radius_max

@@ -13,13 +13,17 @@ from cadpanel.delivery.records.report import PanelModel
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
-from cadpanel.geometry.returns import PATCHES, SIDES
+from cadpanel.geometry.returns import PATCHES, SIDES, ReturnRule
 from cadpanel.geometry.shape import PanelShape, PolygonShape
+from cadpanel.geometry.sheet_checks import skin_side_of
+from cadpanel.geometry.trays import TrayShape, folded_tray
 from cadpanel.geometry.vectors import cross, unit
 
 
-def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape:
+def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape | TrayShape:
     """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm.
+
+    Of a flat panel that is folded, what it was before tells where the walls of its joints stand.
 
     Args:
         panel: the record.
@@ -29,6 +33,14 @@ def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> 
     Raises:
         DeliveryError: the record does not say how the panel is cut, or what part it is.
     """
+    if panel.tray is None:
+        return _before_folding(panel, depth, square=square)
+    length, radius = panel.tray
+    rule, side = ReturnRule(length=length, inner_radius=radius), skin_side_of(depth)
+    return folded_tray(_before_folding(panel, depth), panel.returns, rule, abs(depth), side)
+
+
+def _before_folding(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape:
     corners = np.array(panel.corners)
     other = np.array(panel.other_face)
     if (
@@ -75,23 +87,37 @@ def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> 
     )
 
 
+def tray_of(panel: PanelModel, depth: float) -> TrayShape | None:
+    """The panel where it is a flat one with folded edges."""
+    shape = None if panel.tray is None else recorded_shape(panel, depth)
+    return shape if isinstance(shape, TrayShape) else None
+
+
+def sheet_corners(panel: PanelModel, depth: float) -> tuple[Array, Array]:
+    """(v, 3) the corners of the skin and of the other face of a sheet as it is built, mm."""
+    tray = tray_of(panel, depth)
+    if tray is not None:
+        return tray.vertices(), tray.offset(depth).vertices()
+    return np.array(panel.corners).reshape(-1, 3), np.array(panel.other_face).reshape(-1, 3)
+
+
 def unfolded_rulings(panel: PanelModel) -> tuple[int, int]:
     """From which to which corner of its rows a panel is as it was fitted: beyond lie its returns."""
-    first, last = (PATCHES * (side in panel.returns) for side in SIDES)
+    first, last = (PATCHES * (side in panel.returns and panel.tray is None) for side in SIDES)
     return first, len(panel.corners[0]) - last
 
 
 def fitted_patches(panel: PanelModel) -> tuple[PatchModel, ...]:
     """The patches of a panel as it was fitted, without those of its returns."""
     own = slice(*unfolded_rulings(panel))
-    return panel.patches[own.start : own.stop - 1] if panel.returns else panel.patches
+    return panel.patches[own.start : own.stop - 1] if panel.returns and panel.tray is None else panel.patches
 
 
 def unfolded(panel: PanelModel) -> PanelModel:
     """The record of a panel as it was built, but for its returns."""
     own = slice(*unfolded_rulings(panel))
     rows = {"corners": tuple(r[own] for r in panel.corners), "other_face": tuple(r[own] for r in panel.other_face)}
-    return panel.model_copy(update={**rows, "patches": fitted_patches(panel), "returns": ()})
+    return panel.model_copy(update={**rows, "patches": fitted_patches(panel), "returns": (), "tray": None})
 
 
 def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
@@ -105,12 +131,12 @@ def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
         DeliveryError: the record does not say how the panel is cut, or what part it is.
     """
     if panel.fitted is None:
-        return recorded_shape(panel, depth)
+        return _before_folding(panel, depth)
     own = unfolded(panel)
     moves = np.array(own.other_face) - np.array(own.corners)
     other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
     uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other}
-    return recorded_shape(own.model_copy(update=uncut), depth)
+    return _before_folding(own.model_copy(update=uncut), depth)
 
 
 def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from cadpanel.fitting.methods.annealing import Annealing
 from cadpanel.fitting.methods.concurrent import Concurrent
 from cadpanel.fitting.methods.local import Local
 from cadpanel.fitting.methods.method import Method
@@ -23,6 +24,7 @@ METHODS: Mapping[MethodName, Method] = {
     "local": LOCAL,
     "two_stage": TWO_STAGE,
     "concurrent": Concurrent(),
+    "annealing": Annealing(),
 }
 
 

@@ -22,7 +22,7 @@ from cadpanel.solver.stop import Stop
 _RACE = ((10, 4.0), (10, 1.2), (20, 1.0), (360, 1.0))
 # A panel has settled where this share of its cost is left to gain: two cones that are nearly one creep on for hundreds
 # of steps to gain a ten-thousandth of their deviation. Samples of what a feature can be exactly are still met exactly.
-_SETTLED = 1e-5
+_SETTLED = 1e-4
 # The first damping, relative.
 _DAMPING = 1e-3
 # A local fit further off than this share of the panel's length is no fit, and normals further off are no skin.
@@ -32,14 +32,20 @@ _HOPELESS_TILT = np.radians(35.0)
 
 @dataclass(frozen=True, slots=True)
 class Local(Method):
-    """Every panel alone from each of the starts, and for every panel what came nearest."""
+    """Every panel alone from each of the starts, and for every panel what came nearest.
+
+    Attributes:
+        settled: a panel has settled where this share of its cost is left to gain.
+    """
+
+    settled: float = _SETTLED
 
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
         """Fit deviation and a weak pull of the corners to the reference's, as the shop can make it."""
         del progress
-        race = _Race(problem, starts, settings)
+        race = _Race(problem, starts, settings, self.settled)
         for steps, behind in _RACE:
             race.go_on(steps)
             race.drop(behind)
@@ -56,8 +62,8 @@ class _Race:
         steps: linear systems solved.
     """
 
-    def __init__(self, problem: Problem, starts: Sequence[Array], settings: FitSettings) -> None:
-        self._problem, self._settings = problem, settings
+    def __init__(self, problem: Problem, starts: Sequence[Array], settings: FitSettings, settled: float) -> None:
+        self._problem, self._settings, self._settled = problem, settings, settled
         first, everyone = starts[0], np.arange(problem.panels)
         others = [np.flatnonzero((start != first).any(axis=1)) for start in starts[1:]]
         self._panel = np.concatenate([everyone, *others])
@@ -73,7 +79,7 @@ class _Race:
         part = self._problem.take(self._panel)
         size = part.layout.size
         model = Objective(part, part.free_terms(self._settings), coupled=False)
-        stopping = Stopping(cost=_SETTLED, iterations=steps)
+        stopping = Stopping(cost=self._settled, iterations=steps)
         solution = levenberg_marquardt(model, self._at[:, :size], stopping, self._damping)
         self._at[:, :size], self._damping, self._cost = solution.unknowns, solution.damping, solution.cost
         self._rests = solution.converged

@@ -32,6 +32,8 @@ def best_of_starts(
     ends = [solve(local)]
     while len(ends) <= settings.restarts and ends[-1].stopped is not Stop.TOLD:
         ends.append(solve(local + _SHAKE * random.standard_normal(local.shape)))
+    if len(ends) == 1:
+        return ends[0]
     scores = np.array([score(end.unknowns) for end in ends])
     best = int(scores.argmin())
     agreed = int(np.sum(scores <= scores[best] * (1.0 + _AGREE)))

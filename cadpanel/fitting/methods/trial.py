@@ -18,9 +18,12 @@ from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
 from cadpanel.solver.ended import Ended, Limits
 from cadpanel.solver.interior_point import interior_point
+from cadpanel.solver.levenberg_marquardt import Stopping
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.term import HeldTerm
 
+# Corners are gathered closely: what is held from there within a few steps is not seen to later.
+_FIRST = Stopping(cost=1e-3, iterations=40)
 # Steps at most, until gaps are first held and after each tightening.
 _STEPS = 60
 # Steps for which gaps wait for limits: neighbours of different features are driven into a corner otherwise.
@@ -49,7 +52,7 @@ class Trial(Method):
     ) -> Fitted:
         """Fit all panels from their local fits; restarts are of no use here."""
         limits = problem.limits(settings, MARGIN)
-        gathered, iterations = gather(problem, settings, limits, starts[0])
+        gathered, iterations = gather(problem, settings, limits, starts[0], _FIRST)
         held: list[HeldTerm] = [*seams_held(problem, settings, gathered), *limits]
         model = HeldObjective(problem, [problem.deviation], held)
 

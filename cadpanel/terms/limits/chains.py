@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 
@@ -57,12 +58,20 @@ class Chains:
 
 def chains_of(shapes: Sequence[Panel]) -> Iterator[Chains]:
     """The chains among panels, in batches that are alike."""
-    alike: dict[tuple[bool, ...], list[int]] = defaultdict(list)
+    alike: dict[tuple[bool, ...], list[Chain]] = defaultdict(list)
+    where: dict[tuple[bool, ...], list[int]] = defaultdict(list)
+    kinds: dict[type[Panel], bool] = {}  # what a protocol's attributes tell is dear to ask panel by panel
     for place, shape in enumerate(shapes):
-        if isinstance(shape, Chain):
-            alike[tuple(isinstance(patch, ConePatch) for patch in shape.patches)].append(place)
-    for curved, places in alike.items():
-        yield _chains(curved, places, [shape for shape in (shapes[i] for i in places) if isinstance(shape, Chain)])
+        kind = type(shape)
+        if kind not in kinds:
+            kinds[kind] = isinstance(shape, Chain)
+        if kinds[kind]:
+            chain = cast(Chain, shape)
+            curved = tuple(isinstance(patch, ConePatch) for patch in chain.patches)
+            alike[curved].append(chain)
+            where[curved].append(place)
+    for curved, chains in alike.items():
+        yield _chains(curved, where[curved], chains)
 
 
 def _chains(curved: tuple[bool, ...], places: list[int], shapes: list[Chain]) -> Chains:

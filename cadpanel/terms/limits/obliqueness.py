@@ -140,5 +140,6 @@ def _rise(t: Array, twist: Array | None, planes: Array, rates: Array | None) -> 
         return flat, np.zeros((*flat.shape, 0))
     # A direction that is carried with a ruling turns by its twist: u . (omega x t) = omega . (t x u).
     turned = cross(t[:, None], planes[:, :, None])
-    slopes = np.einsum("nerx,nrxj->nerj", turned, twist[:, :, :3]) + np.einsum("nrx,nexj->nerj", t, rates)
+    by_twist = np.swapaxes(np.swapaxes(turned, 1, 2) @ twist[:, :, :3], 1, 2)
+    slopes = by_twist + t[:, None] @ rates
     return flat, slopes.reshape(*flat.shape, -1)

@@ -1,9 +1,9 @@
-"""Scales are those of drawings, and signs that the fonts lack are shown as such."""
+"""Scales are those of drawings, and words are as long as their letters."""
 
 import numpy as np
 import pytest
 
-from cadpanel.delivery.pages.paper import Box, shown, standard_scale, width_of
+from cadpanel.delivery.pages.paper import Box, standard_scale, width_of
 
 BOX = Box(left=10.0, bottom=20.0, width=200.0, height=100.0)
 
@@ -16,9 +16,7 @@ def test_a_part_is_drawn_to_the_largest_usual_scale_at_which_it_fits(size, scale
     assert standard_scale(np.array(size), BOX) == 1.0 / scale
 
 
-def test_signs_that_the_fonts_do_not_have_are_shown_as_missing():
-    assert shown("Süd-01") == "Süd-01"
-    assert shown("面板 7\n") == "?? 7?"
+def test_letters_that_are_bold_or_more_are_wider():
     assert width_of("NW-01", 5.0, bold=True) > width_of("NW-01", 5.0) > width_of("NW-0", 5.0)
 
 

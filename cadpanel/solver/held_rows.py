@@ -1,0 +1,121 @@
+"""All held vectors of a model in a row: what is worked out for each by itself is worked out for all batches at once.
+
+A small problem has a dozen batches of a few vectors each, and most of the time of a step would go to calls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.solver.hold import HeldVectors
+from cadpanel.solver.scatter import Scatter
+
+
+class Rowed(NamedTuple):
+    """Vectors of all batches after each other.
+
+    Attributes:
+        rows: (rows,) their components.
+        squares: (vectors,) |v|^2; of numbers below 0 it is 0.
+        values: (vectors,) the first component: all of what is a number.
+    """
+
+    rows: Array
+    squares: Array
+    values: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeldRows:
+    """Where the vectors of each batch stand in the row.
+
+    Attributes:
+        held: the batches.
+        shapes: of each batch's vectors, (groups, vectors, d).
+        vectors, rows: for each batch where its vectors and their components stand.
+        starts: (vectors,) the first component of each.
+        of: (rows,) whose component it is.
+        first, second: (vectors,) the blocks that each sees, the same one twice where it sees one.
+        gives_way, one_sided: (vectors,) see `Hold`.
+        blocks, pairs: for each batch how it adds to blocks, and to pairs of coupled ones.
+    """
+
+    held: tuple[HeldVectors, ...]
+    shapes: tuple[tuple[int, int, int], ...]
+    vectors: tuple[slice, ...]
+    rows: tuple[slice, ...]
+    starts: IntArray
+    of: IntArray
+    first: IntArray
+    second: IntArray
+    gives_way: BoolArray
+    one_sided: BoolArray
+    blocks: tuple[tuple[Scatter, ...], ...]
+    pairs: tuple[Scatter | None, ...]
+
+    @staticmethod
+    def of_batches(held: Sequence[HeldVectors], vectors: Sequence[Array], blocks: int, pairs: int) -> HeldRows:
+        """The row of batches.
+
+        Args:
+            held: the batches.
+            vectors: (groups, vectors, d) of each.
+            blocks: number of all blocks.
+            pairs: number of all pairs of coupled blocks.
+        """
+        shapes = [(len(one), one.shape[1], one.shape[2]) for one in vectors]
+        counts = [groups * each for groups, each, _ in shapes]
+        sizes = np.repeat(np.array([d for _, _, d in shapes], dtype=np.intp), counts)
+        starts = np.cumsum(sizes) - sizes
+        first, second = (
+            [np.repeat(one.blocks[side], shape[1]) for one, shape in zip(held, shapes, strict=True)] for side in (0, -1)
+        )
+        none = np.zeros(0, dtype=np.intp)
+        return HeldRows(
+            held=tuple(held),
+            shapes=tuple(shapes),
+            vectors=_slices(counts),
+            rows=_slices([count * d for count, (_, _, d) in zip(counts, shapes, strict=True)]),
+            starts=starts,
+            of=np.repeat(np.arange(len(starts)), sizes),
+            first=np.concatenate([none, *first]),
+            second=np.concatenate([none, *second]),
+            gives_way=np.repeat(np.array([one.hold.gives_way for one in held], dtype=bool), counts),
+            one_sided=np.repeat(np.array([one.hold.one_sided for one in held], dtype=bool), counts),
+            blocks=tuple(tuple(Scatter(index, blocks) for index in one.blocks) for one in held),
+            pairs=tuple(None if one.pair is None else Scatter(one.pair, pairs) for one in held),
+        )
+
+    def told(self, parts: Sequence[Array]) -> Array:
+        """One array (vectors,) or (rows,) of one for each batch (groups, vectors, ...)."""
+        return np.concatenate([np.zeros(0), *(part.reshape(-1) for part in parts)])
+
+    def by_batch(self, values: Array) -> tuple[Array, ...]:
+        """For each batch (groups, vectors), of values (vectors,)."""
+        return tuple(values[part].reshape(shape[:2]) for part, shape in zip(self.vectors, self.shapes, strict=True))
+
+    def weights(self) -> Array:
+        """(vectors,) see `Hold`."""
+        return self.told([one.hold.weight for one in self.held])
+
+    def measured(self, vectors: Sequence[Array]) -> Rowed:
+        """Vectors (groups, vectors, d) of each batch in a row."""
+        rows = self.told(vectors)
+        values = rows[self.starts]
+        squares = np.where(self.one_sided & (values < 0.0), 0.0, self.total(rows * rows))
+        return Rowed(rows, squares, values)
+
+    def total(self, rows: Array) -> Array:
+        """(vectors,) sums over the components of each."""
+        return np.asarray(np.add.reduceat(rows, self.starts)) if len(rows) else np.zeros(0)
+
+
+def _slices(counts: Sequence[int]) -> tuple[slice, ...]:
+    stops = np.cumsum([0, *counts]).tolist()
+    return tuple(slice(*pair) for pair in pairwise(stops))

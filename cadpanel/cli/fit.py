@@ -30,6 +30,7 @@ def fit(
     how: ReferenceSettings,
     overwrite: options.Overwrite = False,
     quiet: options.Quiet = False,
+    verbose: options.Verbose = False,
     time_limit: options.TimeLimit = None,
     tell_steps: options.TellSteps = False,
 ) -> None:
@@ -50,7 +51,7 @@ def fit(
         # The tables are for people; numbers for programs are in report.json.
         from cadpanel.cli.tables import print_report
 
-        print_report(report, out, time.perf_counter() - began)
+        print_report(report, out, time.perf_counter() - began, verbose=verbose)
     if shortfall is not None:
         complain(f"{shortfall}.\n")
         raise typer.Exit(1)

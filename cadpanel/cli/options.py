@@ -69,6 +69,14 @@ TellSteps = Annotated[
         rich_help_panel=RUN,
     ),
 ]
+Verbose = Annotated[
+    bool,
+    typer.Option(
+        "--verbose",
+        help="Hold the result against each panel alone and against two stages, in the closing table.",
+        rich_help_panel=RUN,
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but what is wrong.", rich_help_panel=RUN)]
 
 

@@ -45,34 +45,34 @@ _WORTH = {
 _MOST_OF_IT, _MOST_SEAMS = 0.5, 3
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent", "annealing": "annealing"}
 
-_MEASURES: tuple[tuple[str, Callable[[SummaryModel], str]], ...] = (
-    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap)),
-    ("Largest seam gap, mm", lambda s: length(s.max_seam_gap)),
-    ("  width", lambda s: length(s.max_width)),
-    ("  step", lambda s: length(s.max_step)),
-    ("  shift", lambda s: length(s.max_shift)),
-    ("RMS deviation, mm", lambda s: length(s.rms_deviation)),
-    ("  against each alone", lambda s: multiple(s.local_rms_multiple)),
-    ("Largest deviation, mm", lambda s: length(s.max_deviation)),
-    ("Hausdorff distance, mm", lambda s: length(s.hausdorff)),
+_MEASURES: tuple[tuple[str, Callable[[SummaryModel], str], str], ...] = (
+    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners that should meet"),
+    ("Largest seam gap, mm", lambda s: length(s.max_seam_gap), "along the whole seam"),
+    ("  width", lambda s: length(s.max_width), "joint too wide or narrow"),
+    ("  step", lambda s: length(s.max_step), "one panel stands out"),
+    ("  shift", lambda s: length(s.max_shift), "edges out of line"),
+    ("RMS deviation, mm", lambda s: length(s.rms_deviation), "from the drawing, on average"),
+    ("  against each alone", lambda s: multiple(s.local_rms_multiple), "1 if seams cost nothing"),
+    ("Largest deviation, mm", lambda s: length(s.max_deviation), "at the worst place"),
+    ("Hausdorff distance, mm", lambda s: length(s.hausdorff), "both ways, with edges"),
 )
 
 
-def rows(summaries: Sequence[SummaryModel], *, held: bool = True) -> Iterator[tuple[str, list[str]]]:
-    """The headings and numbers of a table with one column a summary.
+def rows(summaries: Sequence[SummaryModel], *, held: bool = True) -> Iterator[tuple[str, list[str], str]]:
+    """The headings and numbers of a table with one column a summary, and what each row means, in a few words.
 
     Args:
         summaries: the columns.
         held: whether there was a tolerance that may be met or not.
     """
-    for heading, show in _MEASURES:
-        yield heading, [show(summary) for summary in summaries]
+    for heading, show, meaning in _MEASURES:
+        yield heading, [show(summary) for summary in summaries], meaning
     for row in (row for limit in LIMITS for row in limit.rows):
         found = [getattr(summary, row.key) for summary in summaries]
         if any(value is not None for value in found):
-            yield row.heading, [DASH if value is None else row.form.format(value) for value in found]
+            yield row.heading, [DASH if value is None else row.form.format(value) for value in found], row.meaning
     if held:
-        yield "Tolerance and limits", ["met" if summary.tolerance_met else "not met" for summary in summaries]
+        yield "Tolerance and limits", ["met" if summary.tolerance_met else "not met" for summary in summaries], ""
 
 
 def length(value: float) -> str:
@@ -91,20 +91,18 @@ def console() -> Console:
     return PrintableConsole(None if own_width else 120)
 
 
-def print_report(report: ReportModel, folder: Path, took: float) -> None:
-    """The table at the end of a fit, the certificate, where it all is and how many seconds it took."""
-    settings = report.settings
-    table = Table(title=title(report), title_justify="left", title_style="bold")
-    table.add_column("")
-    for heading in ("each alone", "two-stage"):
-        table.add_column(heading, justify="right", style="dim")
-    table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
-    columns = (report.baselines.local, report.baselines.two_stage, report.summary)
-    for heading, numbers in rows(columns, held=settings.weights is None):
-        table.add_row(heading, *map(_marked, numbers))
+def print_report(report: ReportModel, folder: Path, took: float, *, verbose: bool = False) -> None:
+    """The table at the end of a fit, the certificate, where it all is and how many seconds it took.
+
+    Args:
+        report: of the delivery.
+        folder: that it lies in.
+        took: seconds.
+        verbose: hold it against the two baselines, too.
+    """
     out = console()
     out.print()
-    out.print(table)
+    out.print(_closing_table(report, verbose=verbose))
     if len(report.features) > 1:
         counts = ", ".join(f"{count} {name}" for name, count in report.features.items())
         out.print(Text(f"Panels by feature: {counts}."))
@@ -131,6 +129,20 @@ def print_report(report: ReportModel, folder: Path, took: float) -> None:
     if (folder / PAGE).is_file():
         out.print(Text(f"Look at it: cadpanel view {folder}"), soft_wrap=True)
     out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+
+
+def _closing_table(report: ReportModel, *, verbose: bool) -> Table:
+    """One row a measure: this result and what it means or, for who asks, the two baselines before it."""
+    settings, baselines = report.settings, report.baselines
+    table = Table(title=title(report), title_justify="left", title_style="bold", show_header=verbose)
+    table.add_column("")
+    columns = [baselines.local, baselines.two_stage, report.summary] if verbose else [report.summary]
+    for heading in ("each alone", "two-stage") if verbose else ():
+        table.add_column(heading, justify="right", style="dim")
+    table.add_column(f"this result ({_METHODS[settings.method]})", justify="right", style="bold")
+    for heading, numbers, meaning in rows(columns, held=settings.weights is None):
+        table.add_row(heading, *map(_marked, numbers), *(() if verbose else (meaning,)))
+    return table
 
 
 def worst_lines(report: ReportModel) -> list[str]:
@@ -303,7 +315,7 @@ def print_comparison(comparison: ComparisonModel) -> None:
     for index, (first, second) in enumerate(comparison.seams):
         table.add_row(Text(f"{first} - {second}"), *(length(c.max_corner_gap[index]) for c in comparison.columns))
     table.add_section()
-    for heading, numbers in rows([column.summary for column in comparison.columns]):
+    for heading, numbers, _ in rows([column.summary for column in comparison.columns]):
         table.add_row(heading, *map(_marked, numbers))
     table.add_section()
     table.add_row("RMS of each panel alone, mm", *(length(c.local_rms_deviation) for c in comparison.columns))

@@ -69,7 +69,7 @@ class ShopSettings:
             takes=str,
             read=lambda _, text: choices_of(text, "panels"),
             metavar="NAME,...",
-            help="Deliver only these panels, * for anything; all are fitted.",
+            help="Deliver only these panels, with commas between names and * for anything (NW-0*); all are fitted.",
             told=False,
         ),
     )

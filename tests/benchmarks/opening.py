@@ -29,6 +29,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = chosen.folder or Path(temporary)
         if not (folder / DOCUMENT).exists():
+            folder.mkdir(parents=True, exist_ok=True)
             run(chosen.panels, folder)
         for window in (False, True):
             found = {

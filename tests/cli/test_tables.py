@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
-from cadpanel.cli.tables import print_report
+from cadpanel.cli.tables import length, print_report
 from cadpanel.delivery.records.report import read_report
 
 
@@ -44,3 +45,17 @@ def test_returns_are_neither_taken_for_the_bend_nor_hide_it(
         panels.append(panel.model_copy(update=told))
     print_report(report.model_copy(update={"panels": tuple(panels)}), delivered, 1.0)
     assert ("Taken for the bend" in capsys.readouterr().out) is not flat
+
+
+def test_baselines_stand_beside_the_result_where_they_are_asked_for(
+    delivered: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    report = read_report(delivered / "report.json")
+    told = []
+    for verbose in (False, True):
+        print_report(report, delivered, 1.0, verbose=verbose)
+        told.append(next(line for line in capsys.readouterr().out.splitlines() if "RMS deviation" in line))
+    numbers = [re.findall(r"\d+\.\d+", line) for line in told]
+    every = (report.baselines.local, report.baselines.two_stage, report.summary)
+    assert numbers[1] == [length(one.rms_deviation) for one in every]
+    assert numbers[0] == numbers[1][2:]

@@ -3,11 +3,9 @@
 What users choose in a window of the system is given; all else goes through the commands themselves.
 """
 
-import json
 import os
 import shutil
 import time
-import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -128,29 +126,13 @@ def refit(folder: str) -> "dict[str, Any]":
     return found
 
 
-def answer() -> None:
-    """Do all of it and leave at once."""
-    try:
-        folder = os.environ["CADPANEL_DELIVERY"]
-        found = commands(folder)
-        found["faces"] = chosen_faces()
-        import FreeCAD
+def answer() -> "dict[str, Any]":
+    """All of it."""
+    import FreeCAD
 
-        FreeCAD.closeDocument(FreeCAD.ActiveDocument.Name)
-        found["fit"] = refit(folder)
-    except Exception:  # noqa: BLE001 - FreeCAD would swallow it; the test shall see it
-        found = {"error": traceback.format_exc()}
-    Path(os.environ["CADPANEL_ANSWER_FILE"]).write_text(json.dumps(found), encoding="utf-8")
-    os._exit(0)
-
-
-def main() -> None:
-    """When the window stands."""
-    try:
-        from PySide import QtCore
-    except ImportError:
-        from PySide2 import QtCore
-    QtCore.QTimer.singleShot(500, answer)
-
-
-main()
+    folder = os.environ["CADPANEL_DELIVERY"]
+    found = commands(folder)
+    found["faces"] = chosen_faces()
+    FreeCAD.closeDocument(FreeCAD.ActiveDocument.Name)
+    found["fit"] = refit(folder)
+    return found

@@ -1,11 +1,9 @@
-"""Runs inside FreeCAD, with or without a window: open a document and write what FreeCAD makes of it as JSON.
+"""Runs inside FreeCAD, with or without a window: opens a document and tells what FreeCAD makes of it.
 
-With a window it waits until that stands, as FreeCAD runs scripts before, and looks at the colours on the screen.
+With a window it looks at the colours on the screen, too.
 """
 
-import json
 import os
-import traceback
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -66,33 +64,13 @@ def seen(document: Any) -> dict[str, Any]:
     }
 
 
-def answer() -> None:
-    """Open the document that the environment names, say what is in it, and leave at once."""
+def answer() -> dict[str, Any]:
+    """What is in the document that the environment names."""
     import FreeCAD
 
-    try:
-        document = FreeCAD.openDocument(os.environ["CADPANEL_DOCUMENT"])
-        found: dict[str, Any] = {"objects": [described(thing) for thing in document.Objects]}
-        if FreeCAD.GuiUp:
-            found["screen"] = seen(document)
-        found["recomputed"] = document.recompute()
-    except Exception:  # noqa: BLE001 - FreeCAD would swallow it; the test shall see it
-        found = {"error": traceback.format_exc()}
-    Path(os.environ["CADPANEL_ANSWER_FILE"]).write_text(json.dumps(found), encoding="utf-8")
-    os._exit(0)
-
-
-def main() -> None:
-    """Now, or when the window stands."""
-    import FreeCAD
-
-    if not FreeCAD.GuiUp:
-        answer()
-    try:
-        from PySide import QtCore
-    except ImportError:
-        from PySide2 import QtCore
-    QtCore.QTimer.singleShot(500, answer)
-
-
-main()
+    document = FreeCAD.openDocument(os.environ["CADPANEL_DOCUMENT"])
+    found: dict[str, Any] = {"objects": [described(thing) for thing in document.Objects]}
+    if FreeCAD.GuiUp:
+        found["screen"] = seen(document)
+    found["recomputed"] = document.recompute()
+    return found

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 HERE = Path(__file__).parent
+INSIDE = HERE / "inside.py"
 PROGRAMS = ("freecadcmd", "FreeCADCmd")
 WINDOWS = ("freecad", "FreeCAD")
 SCREENS = ("xvfb-run",)
@@ -60,7 +61,7 @@ def run_in_freecad(
     home: Path | None = None,
     timeout: float = 120.0,
 ) -> dict[str, Any]:
-    """What a driver, a script of this folder, has to say.
+    """What a driver, a script of this folder with a function `answer`, has to say.
 
     Args:
         driver: its file.
@@ -79,8 +80,12 @@ def run_in_freecad(
     with tempfile.TemporaryDirectory() as folder:
         answer_file = Path(folder) / "answer.json"
         process = subprocess.run(
-            [*command, str(HERE / driver)],
-            env={**_environment(answer_file, home or Path(folder), window=window), **given},
+            [*command, str(INSIDE)],
+            env={
+                **_environment(answer_file, home or Path(folder), window=window),
+                "CADPANEL_DRIVER": str(HERE / driver),
+                **given,
+            },
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -21,33 +18,19 @@ from cadpanel.geometry.flat_sizes import flat_sizes
 from cadpanel.geometry.polyline import distances_to_polylines
 from cadpanel.geometry.unroll import unroll
 from tests.delivered import fitted
-from tests.freecad.program import PROGRAMS, found_program
+from tests.freecad.program import run_in_freecad
 from tests.thorough import thorough
 
 pytestmark = [pytest.mark.freecad, thorough]
-UNFOLDER = Path(__file__).parent / "unfolder.py"
 # Edges of triangles are as long in the plane to so many mm: flatmesh's own error, which adds up across a panel.
 STRAIN, SUM_OF_STRAINS = 1e-3, 0.02
 AREA = 3e-5  # relative; what a mesh with chords of 0.05 mm cuts off the cone
 
 
-def unfolded(skins: Path, folder: Path) -> list[tuple[Array, Array, IntArray]]:
+def unfolded(skins: Path) -> list[tuple[Array, Array, IntArray]]:
     """Of every shell of a file its nodes in space and in the plane, and the triangles between them."""
-    answer = folder / "unfolded.json"
-    paths = {"CADPANEL_STEP_FILE": str(skins), "CADPANEL_ANSWER_FILE": str(answer), "HOME": str(folder)}
-    ours = ("PYTHON", "VIRTUAL_ENV", "COV_")  # FreeCAD has a Python of its own
-    inherited = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
-    subprocess.run(
-        [found_program(PROGRAMS, "freecad-python3"), str(UNFOLDER)],
-        env={**inherited, **paths},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        timeout=240.0,
-        check=False,
-        cwd=folder,
-    )
-    found = json.loads(answer.read_text(encoding="utf-8"))
-    assert "error" not in found, found["error"]
+    given = {"CADPANEL_STEP_FILE": str(skins)}
+    found = run_in_freecad("unfolder_driver.py", given, timeout=240.0)
     return [
         (np.array(shell["nodes"]), np.array(shell["flat"]), np.array(shell["triangles"])) for shell in found["shells"]
     ]
@@ -63,7 +46,7 @@ def laid_on(points: Array, others: Array) -> tuple[Array, Array, Array]:
 def test_flatmesh_unfolds_delivered_skins_to_our_flat_patterns(tmp_path: Path) -> None:
     deliver(fitted(), tmp_path / "out", SheetSettings(ends="square"))
     report = read_report(tmp_path / "out" / REPORT)
-    shells = unfolded(tmp_path / "out" / SKINS, tmp_path)
+    shells = unfolded(tmp_path / "out" / SKINS)
     assert len(shells) == len(report.panels)
     for panel, (nodes, flat, triangles) in zip(report.panels, shells, strict=True):
         shape = recorded_shape(panel, -3.0, square=True)

@@ -12,10 +12,11 @@ from OCP.IGESData import IGESData_IGESModel
 from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.files.format import Format
-from cadpanel.brep.files.model import Model
+from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.units import unit_taken
 from cadpanel.brep.files.xcaf import new_document, parts_of
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
@@ -37,6 +38,8 @@ UNITS = {
     11: ("microinch", ("UIN",)),
 }
 INCHES, MILLIMETRES, BY_NAME = 1, 2, 3
+# Untrimmed surfaces: without one there is no face. Where a trimmed one fails, a face may be left, cut otherwise.
+SURFACES = {114, 118, 120, 122, 128, 140, 190, 192, 194, 196, 198}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +72,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
             raise ReferenceFileError(
                 f"'{path.name}' holds nothing that the CAD kernel can read: export the faces of the skin again."
             )
-        _check_transfer(path.name, reader)
+        lost = _lost(path.name, reader)
         parts = parts_of(document)
     except Standard_Failure as error:
         raise ReferenceFileError(
@@ -81,7 +84,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
         format=IGES.name,
         unit=unit.word,
         own_unit=unit.own,
-        parts=tuple(replace(part, shape=scaled(part.shape, factor)) for part in parts),
+        parts=(*(replace(part, shape=scaled(part.shape, factor)) for part in parts), *lost),
         notes=unit.notes,
     )
 
@@ -122,18 +125,27 @@ def _unit(name: str, model: IGESData_IGESModel, millimetres: float | None) -> _U
     return unit
 
 
-def _check_transfer(name: str, reader: IGESCAFControl_Reader) -> None:
-    """Refuse what was read only in part."""
-    checks = reader.WS().TransferReader().LastCheckList()
+def _lost(name: str, reader: IGESCAFControl_Reader) -> tuple[Part, ...]:
+    """The faces that the kernel cannot make, as parts that hold nothing else.
+
+    Raises:
+        ReferenceFileError: what it cannot make is no surface, so that a face may have been made without it.
+    """
+    checks, found = reader.WS().TransferReader().LastCheckList(), []
     checks.Start()
     while checks.More():
         if checks.Value().HasFailed():
             said = str(checks.Value().CFail(1)).strip().rstrip(".")
-            raise ReferenceFileError(
-                f"'{name}' holds an entity that the CAD kernel cannot read (number {checks.Number()} of its directory: "
-                f"{said}): repair it and export the reference again."
-            )
+            entity = reader.IGESModel().Entity(checks.Number())
+            if entity is None or entity.TypeNumber() not in SURFACES:
+                raise ReferenceFileError(
+                    f"'{name}' holds an entity that the CAD kernel cannot read (number {checks.Number()} of its "
+                    f"directory: {said}): repair it and export the reference again."
+                )
+            why = f"the CAD kernel cannot make it (entity {checks.Number()} of the directory: {said})"
+            found.append(Part(label=Label(), shape=compound_of([]), face_labels=(), unreadable={0: why}))
         checks.Next()
+    return tuple(found)
 
 
 IGES = Format(

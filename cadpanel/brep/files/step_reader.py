@@ -14,6 +14,7 @@ from OCP.TColStd import TColStd_SequenceOfAsciiString
 from OCP.TDocStd import TDocStd_Document
 
 from cadpanel.brep.files.step_damage import damage
+from cadpanel.brep.files.step_lost import Failure
 from cadpanel.brep.files.xcaf import new_document
 from cadpanel.brep.kernel.messages import silence_kernel
 
@@ -63,15 +64,15 @@ class StepDocument:
         words = {str(lengths.Value(index).ToCString()).lower() for index in range(1, lengths.Length() + 1)}
         return " and ".join(sorted(words)) or None
 
-    def failed(self) -> str | None:
-        """What the kernel says of the first shape that it could not make; None where it could make all."""
-        checks = self.reader.Reader().WS().TransferReader().LastCheckList()
+    def failures(self) -> list[Failure]:
+        """Where the kernel could not make a shape; empty where it could make all."""
+        checks, found = self.reader.Reader().WS().TransferReader().LastCheckList(), []
         checks.Start()
         while checks.More():
             if checks.Value().HasFailed():
-                return _first_fail(checks.Value())
+                found.append(Failure(checks.Number(), _first_fail(checks.Value())))
             checks.Next()
-        return None
+        return found
 
 
 def read_document(path: Path, *, labels: bool, heal: bool = True, properties: bool = False) -> StepDocument:

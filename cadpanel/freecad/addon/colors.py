@@ -43,7 +43,10 @@ def _by_number(panels: Sequence[Any], what: str) -> tuple[list[Color], str]:
         return [_NOTHING] * len(panels), "no panel has one"
     least, largest = min(numbers), max(numbers)
     ends = [next(one for one in quantities if one is not None and one.Value == end) for end in (least, largest)]
-    legend = " to ".join(one.UserString for one in ends)
+    words = [one.UserString for one in ends]
+    if words[0] == words[1]:  # with more digits, where FreeCAD's few say the same of both
+        words = [f"{one.Value:.6g} {word.split()[-1]}" for one, word in zip(ends, words)]
+    legend = " to ".join(words)
     if len(numbers) < len(panels):
         legend += "; grey has none"
     return [_NOTHING if one is None else _ramp(one.Value, least, largest) for one in quantities], legend

@@ -50,7 +50,7 @@ class DriftAlong(CornerDrift):
     default = 0.02
     help = "How far corners may move along the strip, of the length."
     rows = (
-        Row("max_drift_along", "Largest drift along, mm", "{:.1f}"),
+        Row("max_drift_along", "Largest drift along, mm", "{:.1f}", "corners along the strip"),
         Row("drift_along_percent", "  of the panel's length", "{:.2f} %"),
     )
 
@@ -72,7 +72,7 @@ class DriftAcross(CornerDrift):
     default = 0.02
     help = "How far corners may move across it, which people see."
     rows = (
-        Row("max_free_edge_drift", "Largest drift across, mm", "{:.1f}"),
+        Row("max_free_edge_drift", "Largest drift across, mm", "{:.1f}", "corners off the free edges"),
         Row("drift_across_percent", "  of the panel's length", "{:.2f} %"),
     )
 

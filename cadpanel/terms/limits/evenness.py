@@ -33,7 +33,7 @@ class Evenness(Limit):
     yields = True
     remedy = "less even seams"
     rows = (
-        Row("max_unevenness", "Largest unevenness of seams, mm", "{:.1f}"),
+        Row("max_unevenness", "Largest unevenness of seams, mm", "{:.1f}", "seams off an even row"),
         Row("unevenness_percent", "  of the panel's length", "{:.2f} %"),
     )
 

@@ -25,7 +25,7 @@ class FlangeWidth(Limit):
     asked = False
     at_least = True
     remedy = "more drift"
-    rows = (Row("least_flange_width", "Narrowest flange, mm", "{:.1f}"),)
+    rows = (Row("least_flange_width", "Narrowest flange, mm", "{:.1f}", "flat beside a bend"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
         """See `Limit.held`; a `LackTerm` has a margin of its own."""

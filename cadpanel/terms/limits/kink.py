@@ -26,7 +26,7 @@ class Kink(Limit):
     unit = "degrees"
     help = "Largest angle between neighbouring skins across a seam; 180 for any."
     remedy = "a larger kink"
-    rows = (Row("max_kink", "Largest kink, degrees", "{:.2f}"),)
+    rows = (Row("max_kink", "Largest kink, degrees", "{:.2f}", "between two skins"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
         """See `Limit.held`; where it cannot be held, it gives way like gaps."""

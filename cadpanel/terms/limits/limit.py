@@ -127,11 +127,13 @@ class Row:
         key: under which the report's summary has the number.
         heading: of the row.
         form: how the number is written, for `str.format`.
+        meaning: what it is, in a fabricator's words and so few that they stand on the row.
     """
 
     key: str
     heading: str
     form: str
+    meaning: str = ""
 
 
 class Limit(ABC):

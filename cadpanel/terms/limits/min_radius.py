@@ -34,7 +34,7 @@ class MinRadius(Limit):
     help = "Tightest radius that the shop can roll."
     at_least = True
     remedy = "a tighter radius"
-    rows = (Row("least_radius", "Tightest radius, mm", "{:.1f}"),)
+    rows = (Row("least_radius", "Tightest radius, mm", "{:.1f}", "to roll or to bend"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
         """See `Limit.held`; a `LackTerm` has a margin of its own."""

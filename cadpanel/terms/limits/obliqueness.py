@@ -40,7 +40,7 @@ class Obliqueness(Limit):
     asked = False
     at_least = True
     remedy = "more drift"
-    rows = (Row("least_cut_angle", "Most oblique cut of an end, degrees", "{:.1f}"),)
+    rows = (Row("least_cut_angle", "Most oblique cut of an end, degrees", "{:.1f}", "90 is square to the bend"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
         """See `Limit.held`; a `LackTerm` has a margin of its own."""

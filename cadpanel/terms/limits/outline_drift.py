@@ -35,7 +35,7 @@ class DriftOutline(Limit):
     yields = True
     remedy = "an outline that leaves the drawn one further"
     rows = (
-        Row("max_outline_drift", "Free outline off the drawn, mm", "{:.1f}"),
+        Row("max_outline_drift", "Free outline off the drawn, mm", "{:.1f}", "anywhere along the outline"),
         Row("outline_drift_percent", "  of the panel's length", "{:.2f} %"),
     )
 

@@ -32,7 +32,7 @@ class SeamTurn(Limit):
     help = "How far seams may turn from the drawn ones."
     yields = True
     remedy = "seams that turn more"
-    rows = (Row("max_seam_turn", "Largest turn of a seam, degrees", "{:.2f}"),)
+    rows = (Row("max_seam_turn", "Largest turn of a seam, degrees", "{:.2f}", "against the drawn seam"),)
 
     def held(self, panels: Panels, allowed: Mapping[str, float], margin: float) -> list[HeldTerm]:
         """See `Limit.held`; polygons without seams have nothing that may not turn."""

@@ -60,7 +60,7 @@ function showLegend(mode) {
 
 // A browser without WebGL still has all numbers.
 function stageOf() {
-  if (document.createElement("canvas").getContext("webgl2")) return new Stage(model, get("canvas"));
+  if (document.createElement("canvas").getContext("webgl2")) return new Stage(model, get("canvas"), get("legend"));
   get("nothing").hidden = false;
   get("canvas").hidden = true;
   return null;

@@ -16,9 +16,11 @@ const CLOSER = 0.994;
 const ROOM = 1.12;
 
 class Stage {
-  constructor(model, canvas) {
+  constructor(model, canvas, legend) {
     this.model = model;
     this.canvas = canvas;
+    this.legend = legend;
+    this.covered = 0;
     this.middle = new THREE.Vector3(...model.box.middle);
     this.apart = 0;
     this.section = null;
@@ -281,7 +283,10 @@ class Stage {
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    // The legend lies on the picture's lower edge: what is shown stands above it, where no panel is hidden.
+    const on = getComputedStyle(this.legend).position === "absolute";
+    this.covered = on ? Math.min((this.legend.offsetHeight + 16) / height, 0.4) : 0;
+    this.camera.setViewOffset(width, height, 0, 0.5 * this.covered * height, width, height);
     // Whoever has not turned it yet sees all of it, also when the page has found its form.
     if (this.first && this.camera.position.equals(this.first)) this.home();
     else this.draw();
@@ -319,8 +324,9 @@ class Stage {
     const back = way.clone().normalize();
     const right = new THREE.Vector3(-back.y, back.x, 0).normalize();
     const up = back.clone().cross(right);
-    const high = Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
-    const wide = high * (this.camera.aspect || 1);
+    const whole = Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    const wide = whole * (this.camera.aspect || 1);
+    const high = whole * (1 - this.covered);
     const points = this.sheets.geometry.attributes.position.array;
     const here = new THREE.Vector3();
     let distance = 0;

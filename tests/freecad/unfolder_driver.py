@@ -1,12 +1,6 @@
-"""Runs inside FreeCAD: unfold every shell of one STEP file with flatmesh and write the nodes of its mesh as JSON.
+"""Runs inside FreeCAD: unfolds every shell of one STEP file with flatmesh and tells the nodes of its mesh."""
 
-As `driver.py`, it gets its two paths through the environment and writes failures to its answer.
-"""
-
-import json
 import os
-import traceback
-from pathlib import Path
 from typing import Any
 
 CHORD = 0.05  # mm by which the mesh may lie off the shell
@@ -32,14 +26,6 @@ def unfold(path: str) -> list[dict[str, Any]]:
     return found
 
 
-def main() -> None:
-    """Unfold the file named in the environment and leave at once: FreeCAD would wait for commands."""
-    try:
-        answer: dict[str, Any] = {"shells": unfold(os.environ["CADPANEL_STEP_FILE"])}
-    except Exception:  # noqa: BLE001 - FreeCAD would swallow it; the test shall see it
-        answer = {"error": traceback.format_exc()}
-    Path(os.environ["CADPANEL_ANSWER_FILE"]).write_text(json.dumps(answer), encoding="utf-8")
-    os._exit(0)
-
-
-main()
+def answer() -> dict[str, Any]:
+    """The shells of the file that the environment names."""
+    return {"shells": unfold(os.environ["CADPANEL_STEP_FILE"])}

@@ -23,8 +23,8 @@ from cadpanel.delivery.records.certified import CertificateModel, ClearModel
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel, SeamModel
-from cadpanel.delivery.records.to_shape import recorded_shape, unfolded_rulings
-from cadpanel.geometry.rewalk import rewalked
+from cadpanel.delivery.records.to_shape import unfolded_rulings
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import sheet_depth
 
 
@@ -69,10 +69,10 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             square=contents.sheet.ends == "square",
             holes=_expected_holes(part, depth),
             folded=_folded(panel),
-            sheet=_sheet(panel, part, contents),
+            sheet=_sheet(shape, part, contents),
         )
-        for panel, part, said, said_of_skin in zip(
-            contents.records, contents.parts, solid_data(contents), skin_data(contents), strict=True
+        for panel, shape, part, said, said_of_skin in zip(
+            contents.records, contents.shapes, contents.parts, solid_data(contents), skin_data(contents), strict=True
         )
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
@@ -84,25 +84,13 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     return Proved(certificate=record, seams=_with_joints(contents.seams, found))
 
 
-def _sheet(panel: PanelModel, part: FlatPart, contents: Contents) -> Sheet | None:
-    """What is built anew; None where patches that are all but flat have numbers too coarse to walk by.
-
-    Such a panel's corners are still held to its patches, and its volume, corners and faces to the files.
-    """
-    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
-    shape = rewalked(recorded_shape(panel, depth, square=contents.sheet.ends == "square"))
-    if not np.abs(shape.corners() - np.array(panel.corners)).max() <= WALKED:
-        return None
+def _sheet(shape: Panel, part: FlatPart, contents: Contents) -> Sheet:
     return Sheet(
         shape=shape,
         thickness=contents.sheet.thickness,
         skin_side=contents.sheet.skin_side,
         holes=() if part.fixings is None else part.fixings.holes,
     )
-
-
-WALKED = 5e-7
-"""Distance in mm from its corners within which a panel's numbers must lead from ruling to ruling to build it anew."""
 
 
 def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:

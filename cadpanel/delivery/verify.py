@@ -20,11 +20,11 @@ from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.measured_again import measured_faults, reading_again
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import ReportModel, read_report
-from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.errors import DeliveryError, SettingsError
-from cadpanel.geometry.sheet_checks import sheet_depth
+from cadpanel.geometry.shape import PanelShape, PolygonShape
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,12 +73,13 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
     _demand_files(place, (REPORT, MANIFEST))
     report = read_report(place / REPORT)
     try:
-        outputs, contents = chosen_outputs(report.settings.outputs, OUTPUTS), _contents(report)
+        outputs, shapes = chosen_outputs(report.settings.outputs, OUTPUTS), recorded_shapes(report)
+        contents = _contents(report, shapes)
     except SettingsError as error:
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
-    failures = (*_changed(place), *certificate.failures, *check_report(report, certificate))
+    failures = (*_changed(place), *certificate.failures, *check_report(report, shapes, certificate))
     if reference is None:
         return Verification(report=report, certificate=certificate, failures=failures, unproved=BY_REFERENCE + BY_A_FIT)
     file = Path(reference)
@@ -97,13 +98,11 @@ def _demand_files(place: Path, names: Sequence[str]) -> None:
             raise DeliveryError(f"'{place}' holds no {name}, so it is no whole delivery: write it again.")
 
 
-def _contents(report: ReportModel) -> Contents:
+def _contents(report: ReportModel, shapes: Sequence[PanelShape | PolygonShape]) -> Contents:
     """What the files must tell of, from the report's own numbers."""
     sheet, shop = report.settings.sheet(), report.settings.shop()
     chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))
-    depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    square = sheet.ends == "square"
-    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
+    parts = flat_parts(shapes, sheet, shop)
     own = [place for place, panel in enumerate(report.panels) if panel.name in chosen]
     return Contents(
         title=Path(report.reference.file).stem,
@@ -111,6 +110,7 @@ def _contents(report: ReportModel) -> Contents:
         shop=shop,
         records=tuple(report.panels[place] for place in own),
         seams=report.seams,
+        shapes=tuple(shapes[place] for place in own),
         parts=tuple(parts[place] for place in own),
         joint=report.settings.joint,
         origin=report.origin.offset,

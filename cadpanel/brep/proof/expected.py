@@ -59,7 +59,7 @@ class ExpectedPanel:
             nor round then.
         holes: through its sheet; None where it has none.
         folded: patches beyond the fit's at side 0 and at side 1: those of returns.
-        sheet: what both files hold of it, to be built anew; None to leave that alone.
+        sheet: what both files hold of it, to be built anew; None where the caller has no numbers for that.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """

@@ -57,4 +57,25 @@ class CylinderPatchModel(Record):
     sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
 
 
+class RulingModel(Record):
+    """A straight line of a panel's skin, and the patch that begins at it: by these numbers the panel is built anew.
+
+    Attributes:
+        point: on the line, mm.
+        direction: unit vector along it, from end 0 to end 1.
+        normal: unit normal of the skin there, outwards.
+        radius: of a round patch, mm along the normal from the point to its axis; positive where it is convex outwards;
+            None of a flat one, and at the last ruling, as are the next two.
+        half_angle: degrees, positive where it widens along the direction.
+        sweep: by which it turns about its axis to the next ruling, degrees, of the radius' sign.
+    """
+
+    point: Vector
+    direction: Direction
+    normal: Direction
+    radius: float | None = None
+    half_angle: float | None = None
+    sweep: float | None = None
+
+
 PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]

@@ -23,7 +23,7 @@ from cadpanel.delivery.records.jsonfile import (
     with_keys,
     write_json,
 )
-from cadpanel.delivery.records.patches import PatchModel
+from cadpanel.delivery.records.patches import PatchModel, RulingModel
 from cadpanel.delivery.records.settings import SettingsModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -113,10 +113,12 @@ class FittedModel(Record):
     Attributes:
         corners: as `PanelModel.corners`, mm; by them gaps are measured.
         cuts: the planes that cut end 0 and end 1; none of a polygon.
+        rulings: as `PanelModel.rulings`.
     """
 
     corners: tuple[tuple[Vector, ...], ...]
     cuts: tuple[CutModel, ...] = ()
+    rulings: tuple[RulingModel, ...] = ()
 
 
 class PanelModel(Record):
@@ -141,6 +143,8 @@ class PanelModel(Record):
             of a chain, one row round a polygon. Half a joint back from the seams.
         fitted: the same before it was cut back; None in reports from before panels were.
         patches: in the order of the walk across the panel, as they are built.
+        rulings: its straight lines in the order of the walk, to the last digit, each with the patch that begins there;
+            none of a polygon. What else is told of its shape follows from them and its cuts.
         taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
             along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
@@ -174,6 +178,7 @@ class PanelModel(Record):
     corners: tuple[tuple[Vector, ...], ...]
     fitted: FittedModel | None = None
     patches: tuple[PatchModel, ...]
+    rulings: tuple[RulingModel, ...] = ()
     taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()

@@ -23,6 +23,7 @@ from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps
+from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE, words
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 
@@ -49,12 +50,6 @@ class Verification:
         return not self.failures
 
 
-BY_REFERENCE = ("deviation", "Hausdorff distance", "drift", "turn and unevenness of seams")
-"""What only the reference can tell."""
-BY_A_FIT = ("what other methods reach", "what limits cost", "what the bend was taken from")
-"""What only another fit could tell."""
-
-
 def verify(folder: str | Path, reference: str | Path | None = None) -> Verification:
     """Read a delivery's files and hold them against its report, and the report against itself.
 
@@ -74,17 +69,23 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
     report = read_report(place / REPORT)
     try:
         outputs, shapes = chosen_outputs(report.settings.outputs, OUTPUTS), recorded_shapes(report)
-        contents = _contents(report, shapes)
+        contents = contents_of(report, shapes)
     except SettingsError as error:
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
     failures = (*_changed(place), *certificate.failures, *check_report(report, shapes, certificate))
     if reference is None:
-        return Verification(report=report, certificate=certificate, failures=failures, unproved=BY_REFERENCE + BY_A_FIT)
+        return Verification(
+            report=report,
+            certificate=certificate,
+            failures=failures,
+            unproved=words(BY_REFERENCE, BY_A_FIT, IN_NO_FILE),
+        )
     file = Path(reference)
     again = measured_faults(report, read_reference(file, reading_again(report.reference, file)))
-    return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=BY_A_FIT)
+    listed = words(BY_A_FIT, IN_NO_FILE)
+    return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=listed)
 
 
 def _changed(place: Path) -> Iterator[str]:
@@ -98,7 +99,7 @@ def _demand_files(place: Path, names: Sequence[str]) -> None:
             raise DeliveryError(f"'{place}' holds no {name}, so it is no whole delivery: write it again.")
 
 
-def _contents(report: ReportModel, shapes: Sequence[PanelShape | PolygonShape]) -> Contents:
+def contents_of(report: ReportModel, shapes: Sequence[PanelShape | PolygonShape]) -> Contents:
     """What the files must tell of, from the report's own numbers."""
     sheet, shop = report.settings.sheet(), report.settings.shop()
     chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from cadpanel.delivery.records.jsonfile import Direction, NonNegative, Record, Vector
 
@@ -76,6 +76,12 @@ class RulingModel(Record):
     radius: float | None = None
     half_angle: float | None = None
     sweep: float | None = None
+
+    @model_validator(mode="after")
+    def _check_that_a_bend_is_whole(self) -> RulingModel:
+        if len({number is None for number in (self.radius, self.half_angle, self.sweep)}) > 1:
+            raise ValueError("a bend has a radius, a half angle and a sweep")
+        return self
 
 
 PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]

@@ -120,6 +120,20 @@ class FittedModel(Record):
     cuts: tuple[CutModel, ...] = ()
     rulings: tuple[RulingModel, ...] = ()
 
+    def check_that_all_is_there(self, *, polygon: bool) -> None:
+        """Refuse rows, cuts and rulings that do not belong together.
+
+        Raises:
+            ValueError: saying so.
+        """
+        rows = [len(row) for row in self.corners]
+        whole = rows == rows[:1] and rows[0] >= 3 if polygon else len(rows) == 2 and rows[0] == rows[1] >= 2
+        rulings = len(self.rulings) in ((0,) if polygon else (0, *rows[:1]))
+        if not (whole and rulings and len(self.cuts) == (0 if polygon else 2)):
+            raise ValueError(
+                f"corners in rows of {rows}, {len(self.cuts)} cuts and {len(self.rulings)} rulings make no fitted panel"
+            )
+
 
 class PanelModel(Record):
     """One panel as it was fitted and built.
@@ -198,6 +212,12 @@ class PanelModel(Record):
         polygon = len(rows) == 1 and rows[0] >= 3 and len(self.patches) == 1
         if not (chain or polygon):
             raise ValueError(f"corners in rows of {rows} do not fit {len(self.patches)} patches")
+        if self.other_face and [len(row) for row in self.other_face] != rows:
+            raise ValueError("the other face has other corners than the skin")
+        if self.rulings and (polygon or len(self.rulings) != rows[0]):
+            raise ValueError(f"{len(self.rulings)} rulings do not fit corners in rows of {rows}")
+        if self.fitted is not None:
+            self.fitted.check_that_all_is_there(polygon=polygon)
         return self
 
 

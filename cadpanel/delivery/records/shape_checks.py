@@ -60,6 +60,8 @@ def shape_faults(record: PanelModel, shape: Shape, depth: float) -> Iterator[str
     if not abs(record.area / area - 1.0) <= SAME_AREA:
         yield f"{name}: the report's area is {record.area:.9g} mm2, its rulings and cuts enclose {area:.9g}."
     most = SMALLEST_HALF_ANGLE * float(np.linalg.norm(np.ptp(np.array(record.corners).reshape(-1, 3), axis=0)))
+    if record.moved > 0.0 and all(patch.kind != "cylinder" for patch in record.patches):
+        yield f"{name}: the report says that a slender cone was straightened, and it has no cylinder."
     if not record.moved <= most:
         yield (
             f"{name}: the report says that a slender cone was straightened by {record.moved:.3g} mm, one of its size "

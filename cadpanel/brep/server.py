@@ -7,6 +7,7 @@ import pickle
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
@@ -22,6 +23,7 @@ from cadpanel.brep.proof.archive import kept_facts
 from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
+from cadpanel.brep.proof.solids_back import find_back
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
@@ -70,6 +72,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
     "kept": lambda request, _: kept_facts(request.path),
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
+    "back": lambda request, go_on: find_back(request.path, cast(Path, request.argument), go_on),
     "close": lambda _request, _: INSPECTOR.close(),
 }
 """What can be asked for."""

@@ -25,6 +25,7 @@ from cadpanel.geometry.panel import Panel
 from tests.reference_shapes import write_products
 
 Tamper = Callable[[Path], None]
+Shape = TopoDS_Shape
 Changed = Callable[[TopoDS_Shape, Panel], TopoDS_Shape]
 
 
@@ -67,7 +68,7 @@ def _solid(change: Changed, *, skin: bool = False) -> Tamper:
     return _written(changed)
 
 
-def _moved(by: float) -> Changed:
+def moved(by: float) -> Changed:
     def change(shape: TopoDS_Shape, _panel: Panel) -> TopoDS_Shape:
         move = gp_Trsf()
         move.SetTranslation(gp_Vec(by, 0.5 * by, -by))
@@ -120,11 +121,11 @@ def _sheared(by: float) -> Changed:
     return change
 
 
-def _as_splines(shape: TopoDS_Shape, _panel: Panel) -> TopoDS_Shape:
+def as_splines(shape: TopoDS_Shape, _panel: Panel) -> TopoDS_Shape:
     return BRepBuilderAPI_NurbsConvert(shape, True).Shape()
 
 
-def _drilled(radius: float) -> Changed:
+def drilled(radius: float) -> Changed:
     def change(shape: TopoDS_Shape, panel: Panel) -> TopoDS_Shape:
         corners = panel.corners()
         middle, normal = corners[:, :2].reshape(-1, 3).mean(axis=0), panel.rulings()[2][0]
@@ -184,16 +185,16 @@ def _thicker(sheets: Sheets) -> Sheets:
 SOLIDS: dict[str, Tamper] = {
     "nothing": _written(lambda sheets: sheets),
     **{f"far face sheared by {by:g} mm": _solid(_sheared(by)) for by in (0.5, 50.0, 1000.0)},
-    **{f"solid moved by {by:g} mm": _solid(_moved(by)) for by in (1e-5, 0.01, 100.0)},
+    **{f"solid moved by {by:g} mm": _solid(moved(by)) for by in (1e-5, 0.01, 100.0)},
     "solid scaled by 1e-6": _solid(_scaled(1.0 + 1e-6)),
     "solid scaled by 1000": _solid(_scaled(1000.0)),
     "solid turned by 1e-6 rad": _solid(_turned(1e-6)),
     "solid turned by half a turn": _solid(_turned(math.pi)),
     "solid mirrored": _solid(_mirrored),
-    "solid as splines": _solid(_as_splines),
+    "solid as splines": _solid(as_splines),
     "solid inside out": _solid(lambda shape, _: shape.Reversed()),
-    "solid with a hole of 0.5 mm": _solid(_drilled(0.25)),
-    "solid with a hole of 20 mm": _solid(_drilled(10.0)),
+    "solid with a hole of 0.5 mm": _solid(drilled(0.25)),
+    "solid with a hole of 20 mm": _solid(drilled(10.0)),
     "solid with a notch": _solid(_notched),
     "solid with another one beside it": _solid(_with(_box)),
     "solid twice": _solid(_with(lambda panel: build_panel(panel, 3.0).solid)),
@@ -203,9 +204,9 @@ SOLIDS: dict[str, Tamper] = {
     "solids of 3.01 mm": _written(_thicker),
     "solids under other names": _exchanged("solid"),
     "skins under other names": _exchanged("skin"),
-    "skin moved by 0.01 mm": _solid(_moved(0.01), skin=True),
+    "skin moved by 0.01 mm": _solid(moved(0.01), skin=True),
     "skin inside out": _solid(lambda shape, _: shape.Reversed(), skin=True),
-    "skin as splines": _solid(_as_splines, skin=True),
+    "skin as splines": _solid(as_splines, skin=True),
     "skin as a solid": _solid(lambda _, panel: build_panel(panel, 3.0).solid, skin=True),
     "skin with a box beside it": _solid(_with(_box), skin=True),
 }

@@ -10,6 +10,7 @@ from cadpanel.brep.proof.returned_solids import SolidBack, solids_back
 from cadpanel.delivery.manifest import MANIFEST, changed_files
 from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.errors import DeliveryError
+from cadpanel.kinds import checked
 from cadpanel.reference.settings import file_named
 
 SAME_PLACE = 0.01
@@ -36,6 +37,7 @@ class CameBack:
         return not self.failures
 
 
+@checked
 def check_returned(file: str | Path, delivery: str | Path) -> CameBack:
     """Find a delivery's solids in a file that another program wrote, by where they lie.
 

@@ -22,6 +22,7 @@ from cadpanel.delivery.records.report import PanelModel, ReportModel, read_repor
 from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.congruence import best_motion
+from cadpanel.kinds import checked
 
 TOLERANCE = 0.1
 """Lengths in mm that a shop takes for the same."""
@@ -39,6 +40,7 @@ class _Panel:
     corners: Array
 
 
+@checked
 def diff(before: str | Path, now: str | Path, *, tolerance: float = TOLERANCE) -> DifferenceModel:
     """What differs between two deliveries, by their reports.
 

@@ -26,6 +26,7 @@ from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE, words
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.shape import PanelShape, PolygonShape
+from cadpanel.kinds import checked
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +51,7 @@ class Verification:
         return not self.failures
 
 
+@checked
 def verify(folder: str | Path, reference: str | Path | None = None) -> Verification:
     """Read a delivery's files and hold them against its report, and the report against itself.
 

@@ -27,6 +27,7 @@ from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE, words
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.kinds import checked
+from cadpanel.sizes import refuse_huge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +100,8 @@ def _demand_files(place: Path, names: Sequence[str]) -> None:
     for name in names:
         if not (place / name).exists():
             raise DeliveryError(f"'{place}' holds no {name}, so it is no whole delivery: write it again.")
+        for file in (place / name, *(place / name).glob("*")):
+            refuse_huge(file, DeliveryError)
 
 
 def contents_of(report: ReportModel, shapes: Sequence[PanelShape | PolygonShape]) -> Contents:

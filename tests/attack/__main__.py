@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 from collections import Counter, defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from tests.attack.fuzz import KINDS, Fuzzer
@@ -41,7 +41,7 @@ def fuzz(made: Path, options: argparse.Namespace) -> int:
     fuzzer = Fuzzer(made)
     inputs = [(KINDS[place % len(KINDS)], options.seed + place // len(KINDS)) for place in range(options.count)]
     inputs = [one for one in inputs if options.only in one[0]]
-    return _told(list(tried(inputs, fuzzer.attempt, fuzzer.prepare, options.processes)), by_kind=True)
+    return _told(tried(inputs, fuzzer.attempt, fuzzer.prepare, options.processes), by_kind=True)
 
 
 def tamper(made: Path, options: argparse.Namespace) -> int:
@@ -50,7 +50,7 @@ def tamper(made: Path, options: argparse.Namespace) -> int:
     names = [name for name in tamperer.kinds if options.only in name]
     step = max(1, len(names) // options.count)
     inputs = [(name, 0) for name in names[options.seed % step :: step]]
-    return _told(list(tried(inputs, tamperer.attempt, tamperer.prepare, options.processes)), by_kind=False)
+    return _told(tried(inputs, tamperer.attempt, tamperer.prepare, options.processes), by_kind=False)
 
 
 def kill(made: Path, options: argparse.Namespace) -> int:
@@ -69,18 +69,21 @@ def kill(made: Path, options: argparse.Namespace) -> int:
     return len(faults)
 
 
-def _told(found: Sequence[Ended], *, by_kind: bool) -> int:
+def _told(tries: Iterable[Ended], *, by_kind: bool) -> int:
     """Say what became of inputs; how many have come through."""
-    bad = [one for one in found if one.end.split(":")[0].isupper()]
-    for one in sorted(bad):
-        print(f"{one.kind}, seed {one.seed}: {one.end}")
+    found, bad = [], 0
+    for one in tries:
+        found.append(one)
+        if one.end.split(":")[0].isupper():
+            bad += 1
+            print(f"{one.kind}, seed {one.seed}: {one.end}", flush=True)
     ends: dict[str, Counter[str]] = defaultdict(Counter)
     for one in found:
         ends[one.kind if by_kind else "all kinds"][one.end.split(":")[0]] += 1
     for kind, count in ends.items():
         print(f"{kind}: {', '.join(f'{number} {end}' for end, number in count.most_common())}")
     print(f"{len(found)} tried")
-    return len(bad)
+    return bad
 
 
 def _options(words: Sequence[str] | None) -> argparse.Namespace:

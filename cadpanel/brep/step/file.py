@@ -23,6 +23,7 @@ from cadpanel.brep.step.schemas import Schema
 from cadpanel.brep.step.stated import stated_of
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError
+from cadpanel.sizes import refuse_huge
 
 Color = tuple[float, float, float]
 NamedShape = tuple[str, TopoDS_Shape, Color | None]
@@ -121,6 +122,7 @@ def open_step(path: str | os.PathLike[str], *, heal: bool = False, properties: b
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"'{target}' cannot be read: there is no such file.")
+    refuse_huge(target, DeliveryError)
     try:
         step = read_document(target, labels=False, heal=heal, properties=properties)
     except StepFault as error:

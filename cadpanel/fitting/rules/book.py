@@ -18,6 +18,7 @@ from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.rules.rule import Posed, Rule
 from cadpanel.reference.model import Reference
 from cadpanel.reference.named import near_names
+from cadpanel.sizes import refuse_huge
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +98,7 @@ def rules_of(value: object) -> Rules | None:
 
 
 def _read(path: Path) -> Mapping[str, Any]:
+    refuse_huge(path, SettingsError)
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

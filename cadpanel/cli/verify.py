@@ -26,7 +26,9 @@ def verify(
     reference_delivery: Annotated[
         Path | None,
         typer.Option(
-            metavar="DIR", help="Look for this delivery's solids in a STEP file that came back from another program."
+            "--reference-delivery",
+            metavar="DIR",
+            help="Look for this delivery's solids in a STEP file that came back from another program.",
         ),
     ] = None,
     quiet: options.Quiet = False,

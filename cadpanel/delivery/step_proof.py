@@ -169,6 +169,11 @@ def _far_planes(panel: PanelModel, depth: float) -> Array:
     return found
 
 
+def _measured(error: float) -> float:
+    """What was measured; 0 where nothing could be, and that is among the failures."""
+    return error if np.isfinite(error) else 0.0
+
+
 def _record(certificate: Certificate) -> CertificateModel:
     # A seam whose ends cannot be found has no gap to state; that it cannot be found is among the failures.
     measured = [gap for gap in certificate.seam_gaps if np.isfinite(gap)]
@@ -177,13 +182,13 @@ def _record(certificate: Certificate) -> CertificateModel:
         skins=certificate.skins,
         valid=certificate.valid,
         face_kinds=certificate.face_kinds,
-        max_tangency_error=certificate.max_tangency_error,
-        volume_error=certificate.volume_error,
-        flat_area_error=certificate.flat_area_error,
-        flat_length_error=certificate.flat_length_error,
-        stated_error=certificate.stated_error,
+        max_tangency_error=_measured(certificate.max_tangency_error),
+        volume_error=_measured(certificate.volume_error),
+        flat_area_error=_measured(certificate.flat_area_error),
+        flat_length_error=_measured(certificate.flat_length_error),
+        stated_error=_measured(certificate.stated_error),
         holes=certificate.holes,
-        hole_error=certificate.hole_error,
+        hole_error=_measured(certificate.hole_error),
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         clear=_clear([one for one in certificate.clear if one is not None]),

@@ -33,6 +33,7 @@ BY_A_FIT: tuple[Unproved, ...] = (
 """What only another fit could tell."""
 IN_NO_FILE: tuple[Unproved, ...] = (
     Unproved(what="notes", keys=("panels.*.notes*", "reference.notes*")),
+    Unproved(what="what was asked of the fit", keys=("settings.*", "reference.file", "reference.reading*")),
     Unproved(what="how long it took", keys=("timing*",)),
 )
 """What was so when the delivery was made, and has left nothing else behind."""

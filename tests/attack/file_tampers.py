@@ -38,9 +38,10 @@ def _bumped(by: float) -> Callable[[re.Match[str]], str]:
 REAL = r"-?\d+\.\d*(?:E[+-]?\d+)?"
 _POINT = rf"(CARTESIAN_POINT\('',\({REAL},)({REAL})"
 _OF_STEP: dict[str, tuple[str, str | Callable[[re.Match[str]], str]]] = {
-    "a point by 0.01 mm": (_POINT, _bumped(0.01)),
-    "a point by 2e-6 mm": (_POINT, _bumped(2e-6)),
-    "a direction turned": (rf"(DIRECTION\('',\({REAL},)({REAL})", _bumped(1e-3)),
+    # The first ones are of frames that place nothing: a corner is meant, and the axis of a surface.
+    "a point by 0.01 mm": (rf"(?s)(VERTEX_POINT.*?{_POINT[1:]}", _bumped(0.01)),
+    "a point by 2e-6 mm": (rf"(?s)(VERTEX_POINT.*?{_POINT[1:]}", _bumped(2e-6)),
+    "a direction turned": (rf"(?s)(CONICAL_SURFACE.*?DIRECTION\('',\({REAL},)({REAL})", _bumped(1e-3)),
     "a cone's half angle": (rf"(CONICAL_SURFACE\('',#\d+,{REAL},)({REAL})", _bumped(1e-6)),
     "a cone's radius": (rf"(CONICAL_SURFACE\('',#\d+,)({REAL})", _bumped(1e-3)),
     "an ellipse's half axis": (rf"(ELLIPSE\('',#\d+,)({REAL})", _bumped(1e-3)),

@@ -52,6 +52,9 @@ def check_report(report: ReportModel, shapes: Sequence[Shape], certificate: Cert
     failures = [
         fault for panel, shape in zip(report.panels, shapes, strict=True) for fault in shape_faults(panel, shape, depth)
     ]
+    origin = report.origin
+    if origin.kept != (report.settings.shop().origin == "keep" or not any(origin.offset)):
+        failures.append("The report's origin is called kept, or not kept, against its settings.")
     counted = Counter(panel.feature for panel in report.panels)
     if report.features != counted:
         failures.append(f"The report counts {report.features} panels by feature, its list has {dict(counted)}.")

@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.thorough import left_for_a_thorough_run
+
 settings.register_profile(
     "repeatable",
     derandomize=True,
@@ -36,7 +38,11 @@ last ones are short: with the examples near the end one worker had nothing to do
 
 
 @pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run the long tests first."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Run the long tests first, and leave to a thorough run what is left to it."""
+    left = set(left_for_a_thorough_run(items))
+    if left:
+        config.hook.pytest_deselected(items=[item for item in items if item in left])
+        items[:] = [item for item in items if item not in left]
     first = {TESTS / file for file in FIRST}
     items.sort(key=lambda item: item.path not in first)

@@ -97,7 +97,6 @@ def test_a_delivery_is_written_and_verified(tmp_path: Path) -> None:
     assert verification.holds
 
 
-@pytest.mark.slow
 def test_a_comparison_is_written_where_asked_and_only_there(tmp_path: Path) -> None:
     comparison = cp.compare(strip(), gap_tolerance=20.0, out=tmp_path / "out")
     assert len(comparison.columns) == 4

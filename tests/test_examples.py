@@ -17,6 +17,7 @@ from cadpanel.cli import main as program
 from cadpanel.cli.examples import EXAMPLES as HELP
 from cadpanel.fitting.settings import FitSettings
 from examples.options import with_options
+from tests.thorough import thorough
 
 ROOT = Path(__file__).parent.parent
 REFERENCE = ROOT / "fixtures" / "kai_tak_nw.step"
@@ -100,7 +101,7 @@ def test_the_rules_on_the_pages_are_rules() -> None:
     assert all(told)
 
 
-@pytest.mark.slow
+@thorough
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_an_example_runs_and_writes_step(example: Path, workplace: Path) -> None:
     out = workplace / "out"
@@ -121,7 +122,7 @@ for cell in json.load(open(sys.argv[1], encoding="utf-8"))["cells"]:
 """
 
 
-@pytest.mark.slow
+@thorough
 def test_the_notebook_runs_and_every_cell_shows_something(workplace: Path) -> None:
     notebook = ROOT / "examples" / "look_at_a_fit.ipynb"
     command = [sys.executable, "-c", SHOW, str(notebook)]
@@ -132,13 +133,12 @@ def test_the_notebook_runs_and_every_cell_shows_something(workplace: Path) -> No
     assert all({"text/html", "image/png"} & set(kinds) for kinds in shown[1:])
 
 
-@pytest.mark.slow
+@thorough
 def test_the_snippets_of_the_pages_run_one_after_the_other(workplace: Path) -> None:
     (workplace / "snippets.py").write_text("\n".join(snippets("python")), encoding="utf-8")
     run([sys.executable, "snippets.py"], workplace)
 
 
-@pytest.mark.slow
 def test_the_commands_of_the_pages_run_one_after_the_other(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In this process: that the program starts is held by tests of its own, and the kernel takes long to load."""
     monkeypatch.chdir(workplace)

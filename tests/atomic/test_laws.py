@@ -18,6 +18,8 @@ from cadpanel.atomic.plane import fit_planes
 from cadpanel.atomic.ruling import CONE, CYLINDER, Rulings, distance_rows
 from tests.atomic.known_samples import between, known_cone, rotation
 
+pytestmark = pytest.mark.each_value_once
+
 CLOSE = 1e-7
 
 many = settings(max_examples=15, derandomize=True, deadline=None)

@@ -10,7 +10,6 @@ from cadpanel.delivery.records.comparison import read_comparison
 from tests.cli.conftest import Run
 
 
-@pytest.mark.slow
 def test_four_columns_are_written_and_printed(run: Run, lip_step: Path, tmp_path: Path) -> None:
     answer = run("compare", lip_step, "--out", tmp_path / "out", "--gap-tolerance", "2")
     assert answer.code == 0, answer.err

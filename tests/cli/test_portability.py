@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.thorough import thorough
+
 PACKAGE = Path(__file__).parents[2] / "cadpanel"
 POSIX_ONLY = ("resource", "fcntl", "pwd", "grp", "termios", "tty", "pty", "syslog", "crypt", "nis", "readline")
 # Without SIGKILL, which only Windows' own subprocess does without.
@@ -59,6 +61,7 @@ def test_what_is_hidden_is_hidden_indeed(elsewhere: dict[str, str]) -> None:
     assert answer.stdout.strip() == "False"
 
 
+@thorough
 def test_a_run_is_delivered_and_verified_without_what_posix_alone_has(
     elsewhere: dict[str, str], lip_step: Path, tmp_path: Path
 ) -> None:

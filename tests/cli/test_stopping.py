@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 # The program, which makes a file once the reference is read: what follows is the fit.
@@ -114,6 +114,7 @@ def test_the_first_interrupt_while_it_fits_delivers_the_best_so_far(
     assert (tmp_path / "out" / "report.json").is_file()
 
 
+@thorough
 def test_the_second_interrupt_stops_it_and_leaves_nothing(
     lip_step: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -15,6 +15,8 @@ from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
 from cadpanel.geometry.vectors import cross, dot
 from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
 
+pytestmark = pytest.mark.each_value_once
+
 # Lengths in panel lengths, angles in radians.
 ROUNDING = 1e-12
 

@@ -14,6 +14,8 @@ from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape, PolygonShape, edge_corners
 from tests.chains import CHAINS, FEATURES, POLYGONS, made_problem, mixed_unknowns, problem_of, random_unknowns
 
+pytestmark = pytest.mark.each_value_once
+
 ROUNDING = 1e-12
 # Millimetres, at coordinates of some metres.
 SAME_POINT = 1e-9

@@ -10,6 +10,8 @@ from cadpanel.geometry.conic_chains import ConicChains, conic_chains, followed, 
 from cadpanel.geometry.end_curves import as_chains
 from tests.seams import KINDS
 
+pytestmark = pytest.mark.each_value_once
+
 CURVES = 12
 # Share of both steps by which ends may be apart where they meet.
 JOINED = 1e-6

@@ -10,6 +10,8 @@ from cadpanel.geometry.joints import cut_to_seams
 from cadpanel.geometry.sheet_checks import check_buildable
 from tests.joined import hexagons, quadrilaterals, seams, turned
 
+pytestmark = pytest.mark.each_value_once
+
 CLOSE = 1e-8  # mm
 GRIDS = {"quadrilaterals": quadrilaterals(), "skew": quadrilaterals(skew=0.3), "hexagons": hexagons()}
 # How far panels may be set back where four meet in a corner, in mm.

@@ -20,6 +20,8 @@ from tests.flat_panels import folded, panels
 from tests.known_panels import end_curve
 from tests.shapes import folded_panel, random_panel
 
+pytestmark = pytest.mark.each_value_once
+
 AREA = 1e-9  # relative
 LENGTH = 1e-6  # mm
 OFFSETS = (0.0, -1.5, 3.0)

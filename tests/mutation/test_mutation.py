@@ -9,6 +9,7 @@ import pytest
 
 from tests.mutation.equivalents import LIST, read_equivalents
 from tests.mutation.mutants import mutants_of
+from tests.thorough import thorough
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -94,6 +95,7 @@ def run(checkout, *words):
     )
 
 
+@thorough
 def test_weak_tests_leave_survivors_and_strong_ones_none(checkout):
     weak = run(checkout)
     assert weak.returncode == 1, weak.stderr
@@ -116,6 +118,7 @@ def test_tests_that_fail_as_they_are_are_told(checkout):
     assert "The tests do not pass as they are" in answer.stdout
 
 
+@thorough
 def test_a_listed_change_is_not_tried_and_one_that_cannot_be_made_is_told(checkout):
     line = "return run * grade if run > 1 else -run"
     entry = f"cadpanel/slope.py\n{line}\n{line.replace('> 1', '>= 1')}\nnobody asks for a run of exactly one\n"

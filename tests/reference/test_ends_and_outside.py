@@ -18,6 +18,8 @@ from tests.reference_shapes import (
     shuffled,
 )
 
+pytestmark = pytest.mark.each_value_once
+
 CLOSE = 1e-6  # mm
 few = settings(max_examples=4)
 seeds = st.integers(0, 2**32 - 1)

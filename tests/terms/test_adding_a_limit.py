@@ -12,12 +12,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 import cadpanel
 from cadpanel.terms.limits.flange_width import FlangeWidth
 from fixtures.make_fixtures import Fixture, write
 from tests.delivered import LIP, fitted
+from tests.thorough import thorough
 
 PACKAGE = Path(cadpanel.__file__).parent
 
@@ -74,7 +73,7 @@ def put(path: Path, before: str, line: str) -> None:
     path.write_text(text.replace(before, line + before), encoding="utf-8")
 
 
-@pytest.mark.slow
+@thorough
 def test_a_limit_goes_from_its_file_to_settings_fit_verdict_report_table_and_options(tmp_path: Path) -> None:
     shutil.copytree(PACKAGE, tmp_path / "cadpanel", ignore=shutil.ignore_patterns("__pycache__"))
     limits = tmp_path / "cadpanel" / "terms" / "limits"

@@ -30,6 +30,8 @@ from tests.terms.models import (
     twice_in_place,
 )
 
+pytestmark = pytest.mark.each_value_once
+
 few = settings(max_examples=2)
 seeds = st.integers(0, 10_000)
 

@@ -42,6 +42,8 @@ from tests.terms.models import (
 )
 from tests.thorough import cases
 
+pytestmark = pytest.mark.each_value_once
+
 few = settings(max_examples=3)
 seeds = st.integers(0, 10_000)
 every_term = pytest.mark.parametrize("term", TERMS)

@@ -12,6 +12,8 @@ from cadpanel.geometry.shape import PolygonShape
 from tests.built import RELATIVE, assert_written_as_it_is, check_exact
 from tests.instances import NAMES, TAPERED, random_polygon, random_shapes
 
+pytestmark = pytest.mark.each_value_once
+
 # Straightening six cones one after the other adds up its rounding; of the thinnest sheet the coordinates' digits tell
 # the volume no better.
 STRAIGHTENED, THIN = 5e-12, 1e-9

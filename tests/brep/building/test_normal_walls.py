@@ -17,6 +17,8 @@ from tests.built import exactly_valid
 from tests.chains import FEATURES
 from tests.flat_panels import panels
 
+pytestmark = pytest.mark.each_value_once
+
 NEAR = 1e-9  # mm
 
 

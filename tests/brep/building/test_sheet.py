@@ -19,6 +19,8 @@ from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.volume import sheet_volume
 from tests.shapes import CHAINS, folded_panel, random_panel
 
+pytestmark = pytest.mark.each_value_once
+
 HALF_ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 5e-6, 1e-4, 1e-2, 0.1]
 RELATIVE = 2e-12
 TANGENCY = 1e-11  # rad

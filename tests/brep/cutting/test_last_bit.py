@@ -25,6 +25,8 @@ from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import kernel_face
 from tests.thorough import cases
 
+pytestmark = pytest.mark.each_value_once
+
 # Parts of the numbers by which what is drawn differs from draw to draw.
 NOISES = cases((1e-15, 1e-12), (1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11))
 POINTS = 400

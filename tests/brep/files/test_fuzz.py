@@ -57,7 +57,6 @@ def originals(folder):
     return {name: path.read_bytes() for name, path in written.items()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["products.step", "labelled.step", "faces.iges", "text.brep", "binary.bin.brep", "sphere.3dm"]
 )
@@ -123,7 +122,6 @@ def test_damaged_faces_are_cut_or_refused(originals, lines, tmp_path, monkeypatc
     assert [said for said in sentences if "text.brep" not in said and "lines.brep" not in said] == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("file", ["panels_step", "skins_step"])
 def test_damaged_delivery_is_refused_or_does_not_hold(tmp_path, file):
     """Over what seed 125 leaves of the panels, the kernel crashes."""

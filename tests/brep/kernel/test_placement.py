@@ -34,6 +34,8 @@ from cadpanel.brep.survey import survey
 from cadpanel.reference.settings import ReferenceSettings
 from tests.placed_files import NOWHERE, PLACES, STRIP, curves, faces, write
 
+pytestmark = pytest.mark.each_value_once
+
 EXACT = 1e-9  # mm, and of normals
 # What is searched for to within CLOSE comes out differently by less than that once the geometry itself is moved.
 SEARCHED = 0.1 * CLOSE

@@ -18,6 +18,8 @@ from tests.known_panels import alone, end_curve, renumbered, ring
 from tests.known_panels import moved as moved_reference
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
+pytestmark = pytest.mark.each_value_once
+
 EXACT = 1e-9
 TINY = np.finfo(float).tiny
 RADIUS = 300.0

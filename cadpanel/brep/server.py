@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pickle
+import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -28,6 +29,8 @@ from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
+# Where an object of the kernel lies in memory, which its messages name over lines of their own.
+_POINTER = re.compile(r"0x[0-9a-f]+ : ")
 GoOn = Callable[[], None]
 """Tells whoever asked that the next stage begins."""
 
@@ -114,7 +117,8 @@ def _done(request: Request, stages: _Stages) -> object:
         # Of the kernel, or over arrays that a damaged file fills with nonsense. Python shows the note, a command not.
         stage = stages.now
         what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {stage.doing} fail"
-        refusal = stage.refusal(f"'{stage.file}' makes {what} ({str(error) or type(error).__name__}): {stage.remedy}.")
+        said = _POINTER.sub("", " ".join(str(error).split())) or type(error).__name__
+        refusal = stage.refusal(f"'{stage.file}' makes {what} ({said}): {stage.remedy}.")
         refusal.add_note(traceback.format_exc())
         raise refusal from error
 

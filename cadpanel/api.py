@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 from cadpanel import api_result
 from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords
 from cadpanel.api_sheets import Panels, build_sheets, shapes_of, title_of
+from cadpanel.delivery.settings import Ends, Schema
+from cadpanel.delivery.shop_settings import ShopKeywords
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.result import FitResult, Progress
 from cadpanel.fitting.run import fit as fit_reference
@@ -23,6 +25,7 @@ from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.unroll import FlatPattern, neutral_offset
 from cadpanel.geometry.unroll import unroll as unroll_shape
+from cadpanel.kinds import checked
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
 from cadpanel.setting import require
@@ -34,12 +37,11 @@ if TYPE_CHECKING:
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.records.comparison import ComparisonModel
     from cadpanel.delivery.records.report import ReportModel
-    from cadpanel.delivery.settings import Ends, Schema
     from cadpanel.delivery.sheets import Progress as DeliveryProgress
-    from cadpanel.delivery.shop_settings import ShopKeywords
     from cadpanel.studies.table1 import Progress as CompareProgress
 
 
+@checked
 def read(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Reference:
@@ -60,6 +62,7 @@ def read(
     return read_reference(path, _changed(settings, changes))
 
 
+@checked
 def inspect(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Survey:
@@ -80,7 +83,6 @@ def inspect(
 
 
 def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> ReferenceSettings:
-    _require(settings, ReferenceSettings | None, "how a file is read is told by ReferenceSettings")
     check_keywords("read", changes)
     # The settings bring every form that a keyword may have into one.
     given = {field.name: getattr(settings, field.name) for field in fields(ReferenceSettings)} if settings else {}
@@ -88,21 +90,11 @@ def _changed(settings: ReferenceSettings | None, changes: ReferenceKeywords) -> 
 
 
 def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
-    _require(settings, FitSettings | None, "how panels are fitted is told by FitSettings")
     check_keywords("fit", changes)
     return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
 
 
-def _require(given: object, kind: Any, what: str) -> None:
-    """Refuse what is of another kind; the type checkers of callers would have said so.
-
-    Raises:
-        SettingsError: saying what is wanted.
-    """
-    if not isinstance(given, kind):
-        raise SettingsError(f"{what}, not {given!r:.80}")
-
-
+@checked
 def fit(
     reference: Reference | str | Path,
     settings: FitSettings | None = None,
@@ -130,11 +122,8 @@ def fit(
         PanelError: a panel's faces are nothing that the feature could approximate.
         SettingsError: a setting is out of its range.
     """
-    _require(reference, Reference | str | Path, "what is fitted is a reference as read() gives it, or a file")
-    if time_limit is not None:
-        _require(time_limit, int | float, "a time limit is a number of seconds")
     if time_limit is not None and not time_limit > 0.0:
-        raise SettingsError(f"the time limit must be above 0 s, not {time_limit!r:.80}")
+        raise SettingsError(f"the time limit must be above 0 s, not {time_limit:g}")
     how = _asked(settings, changes)
     read_in = reference if isinstance(reference, Reference) else read(reference)
     if how.rules is not None and how.rules.unread:
@@ -144,6 +133,7 @@ def fit(
     return api_result.FitResult.of(fit_reference(read_in, how, progress, time_limit=time_limit))
 
 
+@checked
 def compare(
     reference: Reference,
     settings: FitSettings | None = None,
@@ -175,7 +165,6 @@ def compare(
     from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference
 
-    _require(reference, Reference, "what is compared is a reference as read() gives it")
     how = with_earlier(_asked(settings or LIKE_THE_PAPER, changes), reference)
     # Refused before the fits, which take their time.
     with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
@@ -185,6 +174,7 @@ def compare(
     return comparison
 
 
+@checked
 def deliver(
     result: FitResult,
     out: str | Path,
@@ -231,6 +221,7 @@ def deliver(
     return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)
 
 
+@checked
 def unroll(
     shape: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer", k_factor: float = 0.5
 ) -> FlatPattern:
@@ -254,6 +245,7 @@ def unroll(
     return unroll_shape(shape, neutral_offset(shape, sheet.thickness, sheet.skin_side, k_factor))
 
 
+@checked
 def to_cadquery(
     panels: Panels,
     *,
@@ -302,6 +294,7 @@ def to_build123d(
     skin_side: SkinSide = "outer",
     **made: Unpack[MadeKeywords],
 ) -> build123d.Compound: ...
+@checked
 def to_build123d(
     panels: Panels,
     *,
@@ -331,6 +324,7 @@ def to_build123d(
     return to_build123d_part(built[0].solid, panels.name)
 
 
+@checked
 def write_step(
     result: Panels,
     path: str | Path,

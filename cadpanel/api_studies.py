@@ -14,6 +14,7 @@ from cadpanel.api_result import FitResult, Study
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
 from cadpanel.fitting.settings import FitKeywords, FitSettings
+from cadpanel.kinds import checked
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from cadpanel.studies.held_points import Progress as StudyProgress
 
 
+@checked
 def study(
     reference: Reference | str | Path,
     *,
@@ -75,7 +77,7 @@ def study(
             )
         reads = [partial(_same, reference)]
     else:
-        how = _reading(reading)
+        how = reading or ReferenceSettings()
         cuts = [replace(how, divide=count) for count in divides] or [how]
         reads = [partial(read_reference, reference, one) for one in cuts]
     asked = _asked(settings, changes)
@@ -91,6 +93,7 @@ def _same(reference: Reference) -> Reference:
     return reference
 
 
+@checked
 def fewest_panels(
     path: str | Path,
     settings: FitSettings | None = None,
@@ -125,7 +128,7 @@ def fewest_panels(
     from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import fewest_panels as fewest
 
-    how = _reading(reading)
+    how = reading or ReferenceSettings()
 
     def cut(count: int) -> Reference:
         return read_reference(path, replace(how, divide=count))
@@ -136,13 +139,5 @@ def fewest_panels(
 
 
 def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
-    if not isinstance(settings, FitSettings | None):
-        raise SettingsError(f"how panels are fitted is told by FitSettings, not {settings!r:.80}")
     check_keywords("fit", changes)
     return replace(settings or FitSettings(), **cast("dict[str, Any]", changes))
-
-
-def _reading(settings: ReferenceSettings | None) -> ReferenceSettings:
-    if not isinstance(settings, ReferenceSettings | None):
-        raise SettingsError(f"how a file is read is told by ReferenceSettings, not {settings!r:.80}")
-    return settings or ReferenceSettings()

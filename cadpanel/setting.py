@@ -47,7 +47,7 @@ class Range:
         if value is None and self.empty:
             return
         if self.whole and not isinstance(value, Integral):
-            raise SettingsError(f"the {self.what} must be a whole number, not {value!r}")
+            raise SettingsError(f"the {self.what} must be a whole number, not {' '.join(repr(value).split()):.80}")
         require(self.what, value, least=self.least, most=self.most, unit=self.unit)
 
 
@@ -102,7 +102,7 @@ def require(what: str, value: object, *, least: float, most: float = math.inf, u
         SettingsError: with one sentence that names the setting and its range.
     """
     if not isinstance(value, Real):
-        raise SettingsError(f"the {what} must be a number, not {value!r}")
+        raise SettingsError(f"the {what} must be a number, not {' '.join(repr(value).split()):.80}")
     number = float(value)
     if not math.isfinite(number) or not least <= number <= most:
         span = f"at least {least:g}{unit}" if math.isinf(most) else f"between {least:g}{unit} and {most:g}{unit}"

@@ -127,7 +127,7 @@ def test_a_file_that_is_not_there_cannot_be_fitted() -> None:
 
 @pytest.mark.parametrize("thickness", ["3", None, True])
 def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
-    with pytest.raises(cp.PanelError, match="the sheet thickness is"):
+    with pytest.raises(cp.SettingsError, match=r"'thickness' of build_solid\(\) must be a number, not"):
         cp.build_solid(fitted().shape("N 2"), cast("float", thickness))
 
 
@@ -136,17 +136,17 @@ def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
     [
         (
             lambda of: cp.fit(of, cast(Any, cp.ReferenceSettings())),
-            "is told by FitSettings, not ReferenceSettings",
+            r"'settings' of fit\(\) must be FitSettings or None, not ReferenceSettings",
         ),
         (
             lambda of: cp.fit(of, cast(Any, {"seed": 1})),
-            "how panels are fitted is told by FitSettings, not {'seed': 1}",
+            "must be FitSettings or None, not {'seed': 1}",
         ),
-        (lambda _: cp.fit(cast(Any, None)), "a reference as read\\(\\) gives it, or a file, not None"),
-        (lambda _: cp.compare(cast(Any, None)), "what is compared is a reference as read\\(\\) gives it, not None"),
+        (lambda _: cp.fit(cast(Any, None)), "must be Reference or a path, not None"),
+        (lambda _: cp.compare(cast(Any, None)), r"of compare\(\) must be Reference, not None"),
         (
             lambda _: cp.read("a.step", cast(Any, cp.FitSettings())),
-            "is told by ReferenceSettings, not FitSettings",
+            "must be ReferenceSettings or None, not FitSettings",
         ),
     ],
 )

@@ -47,5 +47,5 @@ def test_a_file_is_fitted_as_it_is_read(monkeypatch):
     found = cp.fit("roof.step")
     assert asked == [("roof.step", cp.ReferenceSettings())]
     assert found.measures.overall_rms == fitted().measures.overall_rms
-    with pytest.raises(cp.SettingsError, match=r"a reference as read\(\) gives it, or a file, not 7"):
+    with pytest.raises(cp.SettingsError, match=r"'reference' of fit\(\) must be Reference or a path, not 7"):
         cp.fit(7)  # type: ignore[arg-type]

@@ -51,7 +51,7 @@ def test_the_fewest_panels_hold_what_is_asked_and_say_what_was_tried(lip: Path) 
 
 def test_settings_of_another_kind_are_refused(lip: Path) -> None:
     wrong = cast(Any, 3)
-    with pytest.raises(cp.SettingsError, match="is told by FitSettings, not 3"):
+    with pytest.raises(cp.SettingsError, match="must be FitSettings or None, not 3"):
         cp.study(strip(), gaps=[1.0], settings=wrong)
-    with pytest.raises(cp.SettingsError, match="is told by ReferenceSettings, not 3"):
+    with pytest.raises(cp.SettingsError, match="must be ReferenceSettings or None, not 3"):
         cp.fewest_panels(lip, reading=wrong, max_deviation=5.0)

@@ -177,7 +177,7 @@ def test_the_top_level_shows_only_what_it_should() -> None:
 
 
 # Folders of tests that are not about one package: another program, and commands.
-BESIDE = {"freecad", "browser", "benchmarks", "mutation"}
+BESIDE = {"attack", "freecad", "browser", "benchmarks", "mutation"}
 
 # Modules without a test file of their name that no test imports: those without logic, with the reason, and those that
 # are reached through one door only, with the tests that go through it.

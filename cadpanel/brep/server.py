@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import pickle
+import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
@@ -23,10 +25,13 @@ from cadpanel.brep.proof.archive import kept_facts
 from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
+from cadpanel.brep.proof.solids_back import find_back
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
+# Where an object of the kernel lies in memory, which its messages name over lines of their own.
+_POINTER = re.compile(r"0x[0-9a-f]+ : ")
 GoOn = Callable[[], None]
 """Tells whoever asked that the next stage begins."""
 
@@ -83,6 +88,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
     "kept": lambda request, _: kept_facts(request.path),
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
+    "back": lambda request, go_on: find_back(request.path, cast(Path, request.argument), go_on),
     "close": lambda _request, _: INSPECTOR.close(),
 }
 """What can be asked for."""
@@ -124,7 +130,8 @@ def _done(request: Request, stages: _Stages) -> object:
         # Of the kernel, or over arrays that a damaged file fills with nonsense. Python shows the note, a command not.
         stage = stages.now
         what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {stage.doing} fail"
-        refusal = stage.refusal(f"'{stage.file}' makes {what} ({str(error) or type(error).__name__}): {stage.remedy}.")
+        said = _POINTER.sub("", " ".join(str(error).split())) or type(error).__name__
+        refusal = stage.refusal(f"'{stage.file}' makes {what} ({said}): {stage.remedy}.")
         refusal.add_note(traceback.format_exc())
         raise refusal from error
 

@@ -11,22 +11,41 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.printable import complain
 from cadpanel.cli.steps import steps
+from cadpanel.errors import SettingsError
 
 
 def verify(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A folder that 'cadpanel fit' wrote.")],
+    folder: Annotated[
+        Path,
+        typer.Argument(metavar="DIR", help="A folder that 'cadpanel fit' wrote, or a file to be held against one."),
+    ],
     reference: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="What the panels approximate: deviation and drift are proved as well."),
+    ] = None,
+    reference_delivery: Annotated[
+        Path | None,
+        typer.Option(
+            "--reference-delivery",
+            metavar="DIR",
+            help="Look for this delivery's solids in a STEP file that came back from another program.",
+        ),
     ] = None,
     quiet: options.Quiet = False,
 ) -> None:
     """Read a delivery's files again and hold them against its report: every face, edge and vertex, names, gaps, flats.
 
     What needs the reference, deviation, drift and the turn of seams, is proved with --reference, and else listed.
+    'cadpanel verify FILE.step --reference-delivery DIR' finds a delivery's solids in a file that another program wrote,
+    by where they lie, whatever they are called there.
 
     Exit codes: 0 all holds; 1 something does not, and it says what; 2 a file is missing or cannot be read.
     """
+    if reference_delivery is not None:
+        if reference is not None:
+            raise SettingsError("--reference measures a delivery, and --reference-delivery a file: give one of them")
+        _came_back(folder, reference_delivery, quiet=quiet)
+        return
     with steps(quiet=quiet) as shown:
         shown.begin("Read back and verify", folder.name)
         start_reader()
@@ -45,3 +64,22 @@ def verify(
     if not quiet:
         console().print("Everything holds.")
         console().print(f"Not proved: {', '.join(found.unproved)}.")
+
+
+def _came_back(file: Path, delivery: Path, *, quiet: bool) -> None:
+    """A file that another program wrote, against a delivery."""
+    with steps(quiet=quiet) as shown:
+        shown.begin("Read and compare", file.name)
+        start_reader()
+        from cadpanel.cli.returned_table import print_solids_back
+        from cadpanel.cli.tables import console
+        from cadpanel.delivery.came_back import check_returned
+
+        found = check_returned(file, delivery)
+    if not quiet:
+        print_solids_back(found.solids, str(file))
+    if not found.holds:
+        complain("\n".join(("The file is not what was delivered:", *found.failures, "")))
+        raise typer.Exit(1)
+    if not quiet:
+        console().print(f"All {len(found.solids)} solids of the delivery are there.")

@@ -11,6 +11,7 @@ from cadpanel.delivery.shop_settings import ShopSettings
 if TYPE_CHECKING:  # they take their time to load, and a refusal asks for names only
     from cadpanel.delivery.records.flat_parts import FlatPart
     from cadpanel.delivery.records.report import PanelModel, SeamModel, SummaryModel
+    from cadpanel.geometry.panel import Panel
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +25,7 @@ class Contents:
         records: the panels as the report tells of them.
         seams: all seams of the reference.
         parts: the panels as flat parts.
+        shapes: the panels as the records give them back, to be built anew from them.
         joint: clear width between sheets that is promised, mm; None where none is, not even that sheets touch, as in
             reports from before there were joints.
         origin: what has to be added to local coordinates to have the model's, mm.
@@ -36,6 +38,7 @@ class Contents:
     records: tuple[PanelModel, ...]
     seams: tuple[SeamModel, ...]
     parts: tuple[FlatPart, ...]
+    shapes: tuple[Panel, ...] = ()
     joint: float | None = 0.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     summary: SummaryModel | None = None

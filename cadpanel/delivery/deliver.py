@@ -30,12 +30,14 @@ from cadpanel.delivery.records.from_fit import (
 from cadpanel.delivery.records.report import ReportModel, write_report
 from cadpanel.delivery.records.settings import settings_record
 from cadpanel.delivery.records.summary import summary
+from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import Progress, build_panels, say_nothing
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import prove, prove_more
 from cadpanel.errors import ProofError
 from cadpanel.fitting.result import FitResult
+from cadpanel.geometry.sheet_checks import sheet_depth
 
 
 def deliver(
@@ -102,6 +104,7 @@ def fill_delivery(
         told = summary(result.measures, result.local, result.settings, result.outcomes)
         built_at = time.perf_counter()
         own = [place for place, panel in enumerate(panels) if panel.name in chosen]
+        depth = sheet_depth(sheet.thickness, sheet.skin_side)
         delivery = Delivery(
             panels=tuple(built.panels[place] for place in own),
             title=Path(result.reference.source).stem,
@@ -109,6 +112,7 @@ def fill_delivery(
             shop=shop,
             records=tuple(panels[place] for place in own),
             seams=seams,
+            shapes=tuple(recorded_shape(panels[place], depth, square=sheet.ends == "square") for place in own),
             parts=tuple(parts[place] for place in own),
             joint=sheet.joint,
             origin=result.reference.origin,

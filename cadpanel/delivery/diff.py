@@ -19,10 +19,10 @@ from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.difference import DifferenceModel, PanelDifference, Status
 from cadpanel.delivery.records.flat_parts import FlatPart, flat_parts
 from cadpanel.delivery.records.report import PanelModel, ReportModel, read_report
-from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.geometry.congruence import best_motion
-from cadpanel.geometry.sheet_checks import sheet_depth
+from cadpanel.kinds import checked
 
 TOLERANCE = 0.1
 """Lengths in mm that a shop takes for the same."""
@@ -40,6 +40,7 @@ class _Panel:
     corners: Array
 
 
+@checked
 def diff(before: str | Path, now: str | Path, *, tolerance: float = TOLERANCE) -> DifferenceModel:
     """What differs between two deliveries, by their reports.
 
@@ -75,9 +76,7 @@ def _report(folder: str | Path) -> ReportModel:
 
 def _panels(report: ReportModel) -> dict[str, _Panel]:
     sheet, shop = report.settings.sheet(), report.settings.shop()
-    depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    square = sheet.ends == "square"
-    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
+    parts = flat_parts(recorded_shapes(report), sheet, shop)
     offset = np.array(report.origin.offset)
     return {
         record.name: _Panel(record=record, part=part, corners=np.concatenate(record.corners) + offset)

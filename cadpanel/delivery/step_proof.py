@@ -23,8 +23,8 @@ from cadpanel.delivery.records.certified import CertificateModel, ClearModel
 from cadpanel.delivery.records.flat_parts import FlatPart
 from cadpanel.delivery.records.patches import PlanePatchModel
 from cadpanel.delivery.records.report import PanelModel, SeamModel
-from cadpanel.delivery.records.to_shape import recorded_shape, tray_of, unfolded_rulings
-from cadpanel.geometry.rewalk import rewalked
+from cadpanel.delivery.records.to_shape import unfolded_rulings
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.geometry.trays import TrayShape
 
@@ -55,7 +55,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     """
     depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
     moved = {panel.name: panel.moved for panel in contents.records}
-    trays = [tray_of(panel, depth) for panel in contents.records]
+    trays = [shape if isinstance(shape, TrayShape) else None for shape in contents.shapes]
     expected = [
         ExpectedPanel(
             name=panel.name,
@@ -72,10 +72,16 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             holes=_expected_holes(part, depth),
             folded=_folded(panel),
             tray=tray,
-            sheet=_sheet(panel, part, contents),
+            sheet=_sheet(shape, part, contents),
         )
-        for panel, part, said, said_of_skin, tray in zip(
-            contents.records, contents.parts, solid_data(contents), skin_data(contents), trays, strict=True
+        for panel, shape, part, said, said_of_skin, tray in zip(
+            contents.records,
+            contents.shapes,
+            contents.parts,
+            solid_data(contents),
+            skin_data(contents),
+            trays,
+            strict=True,
         )
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
@@ -87,25 +93,13 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     return Proved(certificate=record, seams=_with_joints(contents.seams, found))
 
 
-def _sheet(panel: PanelModel, part: FlatPart, contents: Contents) -> Sheet | None:
-    """What is built anew; None where patches that are all but flat have numbers too coarse to walk by.
-
-    Such a panel's corners are still held to its patches, and its volume, corners and faces to the files.
-    """
-    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
-    shape = rewalked(recorded_shape(panel, depth, square=contents.sheet.ends == "square"))
-    if not np.abs(shape.corners() - np.array(panel.corners)).max() <= WALKED:
-        return None
+def _sheet(shape: Panel, part: FlatPart, contents: Contents) -> Sheet:
     return Sheet(
         shape=shape,
         thickness=contents.sheet.thickness,
         skin_side=contents.sheet.skin_side,
         holes=() if part.fixings is None else part.fixings.holes,
     )
-
-
-WALKED = 5e-7
-"""Distance in mm from its corners within which a panel's numbers must lead from ruling to ruling to build it anew."""
 
 
 def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
@@ -185,6 +179,11 @@ def _far_planes(panel: PanelModel, depth: float) -> Array:
     return found
 
 
+def _measured(error: float) -> float:
+    """What was measured; 0 where nothing could be, and that is among the failures."""
+    return error if np.isfinite(error) else 0.0
+
+
 def _record(certificate: Certificate) -> CertificateModel:
     # A seam whose ends cannot be found has no gap to state; that it cannot be found is among the failures.
     measured = [gap for gap in certificate.seam_gaps if np.isfinite(gap)]
@@ -193,13 +192,13 @@ def _record(certificate: Certificate) -> CertificateModel:
         skins=certificate.skins,
         valid=certificate.valid,
         face_kinds=certificate.face_kinds,
-        max_tangency_error=certificate.max_tangency_error,
-        volume_error=certificate.volume_error,
-        flat_area_error=certificate.flat_area_error,
-        flat_length_error=certificate.flat_length_error,
-        stated_error=certificate.stated_error,
+        max_tangency_error=_measured(certificate.max_tangency_error),
+        volume_error=_measured(certificate.volume_error),
+        flat_area_error=_measured(certificate.flat_area_error),
+        flat_length_error=_measured(certificate.flat_length_error),
+        stated_error=_measured(certificate.stated_error),
         holes=certificate.holes,
-        hole_error=certificate.hole_error,
+        hole_error=_measured(certificate.hole_error),
         names_kept=certificate.names_kept,
         max_seam_gap=max(measured, default=0.0),
         clear=_clear([one for one in certificate.clear if one is not None]),

@@ -20,11 +20,13 @@ from cadpanel.delivery.records.flat_parts import flat_parts
 from cadpanel.delivery.records.measured_again import measured_faults, reading_again
 from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import ReportModel, read_report
-from cadpanel.delivery.records.to_shape import recorded_shape
+from cadpanel.delivery.records.to_shape import Built, recorded_shapes
 from cadpanel.delivery.return_checks import return_faults
 from cadpanel.delivery.step_proof import Proved, prove_steps
+from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE, words
 from cadpanel.errors import DeliveryError, SettingsError
-from cadpanel.geometry.sheet_checks import sheet_depth
+from cadpanel.kinds import checked
+from cadpanel.sizes import refuse_huge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,12 +51,7 @@ class Verification:
         return not self.failures
 
 
-BY_REFERENCE = ("deviation", "Hausdorff distance", "drift", "turn and unevenness of seams")
-"""What only the reference can tell."""
-BY_A_FIT = ("what other methods reach", "what limits cost", "what the bend was taken from")
-"""What only another fit could tell."""
-
-
+@checked
 def verify(folder: str | Path, reference: str | Path | None = None) -> Verification:
     """Read a delivery's files and hold them against its report, and the report against itself.
 
@@ -73,17 +70,24 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
     _demand_files(place, (REPORT, MANIFEST))
     report = read_report(place / REPORT)
     try:
-        outputs, contents = chosen_outputs(report.settings.outputs, OUTPUTS), _contents(report)
+        outputs, shapes = chosen_outputs(report.settings.outputs, OUTPUTS), recorded_shapes(report)
+        contents = contents_of(report, shapes)
     except SettingsError as error:
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
-    failures = (*_changed(place), *certificate.failures, *check_report(report, certificate))
+    failures = (*_changed(place), *certificate.failures, *check_report(report, shapes, certificate))
     if reference is None:
-        return Verification(report=report, certificate=certificate, failures=failures, unproved=BY_REFERENCE + BY_A_FIT)
+        return Verification(
+            report=report,
+            certificate=certificate,
+            failures=failures,
+            unproved=words(BY_REFERENCE, BY_A_FIT, IN_NO_FILE),
+        )
     file = Path(reference)
     again = measured_faults(report, read_reference(file, reading_again(report.reference, file)))
-    return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=BY_A_FIT)
+    listed = words(BY_A_FIT, IN_NO_FILE)
+    return Verification(report=report, certificate=certificate, failures=(*failures, *again), unproved=listed)
 
 
 def _changed(place: Path) -> Iterator[str]:
@@ -95,15 +99,15 @@ def _demand_files(place: Path, names: Sequence[str]) -> None:
     for name in names:
         if not (place / name).exists():
             raise DeliveryError(f"'{place}' holds no {name}, so it is no whole delivery: write it again.")
+        for file in (place / name, *(place / name).glob("*")):
+            refuse_huge(file, DeliveryError)
 
 
-def _contents(report: ReportModel) -> Contents:
+def contents_of(report: ReportModel, shapes: Sequence[Built]) -> Contents:
     """What the files must tell of, from the report's own numbers."""
     sheet, shop = report.settings.sheet(), report.settings.shop()
     chosen = set(chosen_panels([panel.name for panel in report.panels], shop.only))
-    depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    square = sheet.ends == "square"
-    parts = flat_parts([recorded_shape(panel, depth, square=square) for panel in report.panels], sheet, shop)
+    parts = flat_parts(shapes, sheet, shop)
     own = [place for place, panel in enumerate(report.panels) if panel.name in chosen]
     return Contents(
         title=Path(report.reference.file).stem,
@@ -111,6 +115,7 @@ def _contents(report: ReportModel) -> Contents:
         shop=shop,
         records=tuple(report.panels[place] for place in own),
         seams=report.seams,
+        shapes=tuple(shapes[place] for place in own),
         parts=tuple(parts[place] for place in own),
         joint=report.settings.joint,
         origin=report.origin.offset,

@@ -43,7 +43,7 @@ def check_chain(shape: Chain) -> None:
             plane, an apex inside, a section that is no ellipse, cut planes that cross inside, a fold inside out.
     """
     _check_numbers(shape)
-    _check_walk(shape)
+    check_walk(shape)
     _check_face(shape, "")
 
 
@@ -76,8 +76,12 @@ def _numbers(patch: ConePatch) -> tuple[float, float, float]:
     return patch.radius, patch.half_angle, patch.sweep
 
 
-def _check_walk(shape: Chain) -> None:
-    """Each patch must carry its ruling to the next one, turning the way the walk goes."""
+def check_walk(shape: Chain) -> None:
+    """Each patch must carry its ruling to the next one, turning the way the walk goes.
+
+    Raises:
+        PanelError: one does not.
+    """
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):
             _check_cone_numbers(shape.name, index, patch)

@@ -56,6 +56,7 @@ class PanelEdge:
     normal: Array | None
 
 
+@runtime_checkable
 class Panel(Protocol):
     """A panel's skin, exact, in millimetres and radians; what a fit hands to solids, reports and measures.
 

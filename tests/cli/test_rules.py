@@ -8,6 +8,7 @@ from pathlib import Path
 from cadpanel.delivery.records.certified import ClearModel
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import read_report
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.fitting.rules.book import rules_of
 from tests.cli.conftest import Run
 
@@ -42,7 +43,7 @@ def test_rules_are_measured_told_and_kept_in_the_report(
             "seams": tuple(seam.model_copy(update={"joint": 5.0}) for seam in report.seams),
         }
     )
-    faults = check_report(broken, report.certificate)
+    faults = check_report(broken, recorded_shapes(broken), report.certificate)
     assert any("is called kept" in fault for fault in faults)
     assert any("its own joint of 5.0 mm is not the one of 6.0 mm" in fault for fault in faults)
     again = rules_of(json.loads(report.model_dump_json())["settings"]["rules"])

@@ -215,6 +215,15 @@ def test_a_file_that_cannot_be_read_is_one_sentence(run: Run, delivery: Path, na
     assert name in answer.err
 
 
+def test_a_file_that_came_back_is_held_against_its_delivery(run: Run, delivered: Path) -> None:
+    answer = run("verify", delivered / "panels.step", "--reference-delivery", delivered)
+    assert (answer.code, answer.err) == (0, "")
+    assert "All 3 solids of the delivery are there." in answer.out
+    refused = run("verify", delivered, "--reference", "x.step", "--reference-delivery", delivered)
+    assert refused.code == 2
+    assert refused.is_one_sentence()
+
+
 def test_a_folder_that_is_none_is_one_sentence(run: Run, tmp_path: Path) -> None:
     for folder in (tmp_path / "nowhere", tmp_path):
         answer = run("verify", folder)

@@ -17,6 +17,7 @@ from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.from_fit import panel_records
 from cadpanel.delivery.records.from_shape import patch_models
 from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PlanePatchModel
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -153,7 +154,7 @@ def test_an_existing_folder_is_refused_unless_it_may_be_replaced(tmp_path: Path)
 
 def test_the_report_agrees_with_itself_and_with_the_fit(tmp_path: Path) -> None:
     report = deliver(fitted(), tmp_path / "out")
-    assert check_report(report, report.certificate) == ()
+    assert check_report(report, recorded_shapes(report), report.certificate) == ()
     measures = fitted().measures
     assert report.summary.rms_deviation == measures.overall_rms
     assert report.summary.max_corner_drift == measures.drift.max()

@@ -14,6 +14,7 @@ from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ReportModel, read_report, write_report
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.verify import verify
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.run import fit
@@ -51,7 +52,7 @@ def test_a_delivery_of_panels_that_meet_all_round_holds_its_proof(tmp_path: Path
     assert report.certificate.max_seam_gap == pytest.approx(report.summary.max_seam_gap, abs=1e-5)
     assert report.summary.tolerance_met
     assert report.features == {name: len(report.panels)}
-    assert check_report(report, report.certificate) == ()
+    assert check_report(report, recorded_shapes(report), report.certificate) == ()
     assert read_report(tmp_path / "out" / REPORT) == report
     assert verify(tmp_path / "out").holds
 

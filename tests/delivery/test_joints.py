@@ -23,6 +23,7 @@ from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.certified import ClearModel
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.report import ReportModel, read_report, write_report
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.sheets import build_panels
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -166,7 +167,9 @@ def test_a_joint_in_the_report_that_is_not_the_files_is_named(tmp_path: Path) ->
     changed = report.model_copy(update={"seams": (other, *others)})
     assert any(said.startswith(f"{names}: the joint is 10 to 10 mm wide") for said in tampered(out, changed))
     claimed = report.certificate.model_copy(update={"clear": ClearModel(least=10.0, largest=11.0)})
-    found = check_report(report.model_copy(update={"certificate": claimed}), report.certificate)
+    found = check_report(
+        report.model_copy(update={"certificate": claimed}), recorded_shapes(report), report.certificate
+    )
     assert found == ("The certificate in the report says clear.largest = 11.0, the files show 10.0.",)
     assert tampered(out, report) == ()
 

@@ -22,10 +22,12 @@ from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, other_face, sheet_depth
 from cadpanel.geometry.trays import TrayShape
+from cadpanel.kinds import checked
 
 _BUILDER = BRep_Builder()
 
 
+@checked
 def build_skin(shape: Panel) -> TopoDS_Shell:
     """The panel's skin as an open shell, its faces' normals along n (outward).
 
@@ -38,6 +40,7 @@ def build_skin(shape: Panel) -> TopoDS_Shell:
     return shell_of(skin_faces(shape.straightened().shape))
 
 
+@checked
 def build_solid(shape: Panel, thickness: float, skin_side: SkinSide = "outer") -> TopoDS_Solid:
     """The sheet of `thickness` mm on the panel's skin; with "outer" it lies at -n, with "inner" at +n.
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings, file_named
+from cadpanel.sizes import refuse_huge
 
 READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242), IGES, .brep and Rhino .3dm"
 # The first and last part of a file in which its beginning and end are looked for.
@@ -51,6 +52,7 @@ def contents(path: Path, most: int = -1) -> bytes:
     Raises:
         ReferenceFileError: there is no such file, it is a folder or pipe, cannot be read, or is empty.
     """
+    refuse_huge(path, ReferenceFileError)
     try:
         kind = path.stat().st_mode
         if stat.S_ISDIR(kind):

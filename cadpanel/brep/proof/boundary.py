@@ -58,6 +58,13 @@ def difference(found: Boundary, wanted: Boundary) -> str | None:
     return _faces_differ(found, wanted, _pairs(_edges_apart(found, wanted))[0])
 
 
+def edges_off(found: Boundary, wanted: Boundary) -> float:
+    """How far, mm, the farthest vertex or edge lies off; infinite where they do not pair off one to one."""
+    if found.vertices.shape != wanted.vertices.shape or found.edges.shape != wanted.edges.shape:
+        return np.inf
+    return max(_pairs(_vertices_apart(found, wanted))[1], _pairs(_edges_apart(found, wanted))[1])
+
+
 def _vertices_apart(found: Boundary, wanted: Boundary) -> Array:
     """(v, v) distances of the wanted vertices from those found."""
     return np.asarray(norm(wanted.vertices[:, None] - found.vertices))

@@ -62,7 +62,7 @@ class ExpectedPanel:
         folded: patches beyond the fit's at side 0 and at side 1: those of returns.
         tray: where it is a flat panel with folded edges, the panel; its kinds are those of all its faces, its corners
             where the planes of its walls meet.
-        sheet: what both files hold of it, to be built anew; None to leave that alone.
+        sheet: what both files hold of it, to be built anew; None where the caller has no numbers for that.
 
     Corners come in rows: along end 0 and end 1 of a chain, or round a polygon.
     """

@@ -26,6 +26,7 @@ from cadpanel.brep.step.schemas import Schema
 from cadpanel.brep.step.stated import stated_of
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError
+from cadpanel.sizes import refuse_huge
 
 Color = tuple[float, float, float]
 
@@ -152,6 +153,7 @@ def open_step(path: str | os.PathLike[str], *, heal: bool = False, properties: b
     target = Path(path)
     if not target.is_file():
         raise DeliveryError(f"'{target}' cannot be read: there is no such file.")
+    refuse_huge(target, DeliveryError)
     try:
         step = read_document(target, labels=False, heal=heal, properties=properties)
     except StepFault as error:

@@ -15,10 +15,9 @@ import numpy as np
 from cadpanel.arrays import Array, IntArray
 from cadpanel.delivery.records.certified import CertificateModel
 from cadpanel.delivery.records.left_out import seams_left_out
-from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel
 from cadpanel.delivery.records.report import PanelModel, ReportModel, SeamModel, SummaryModel
 from cadpanel.delivery.records.shape_checks import shape_faults
-from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
+from cadpanel.delivery.records.to_shape import Built, fitted_shape
 from cadpanel.features.catalogue import AUTO
 from cadpanel.fitting.rules.book import Rules, rules_of
 from cadpanel.geometry.panel import Panel
@@ -31,19 +30,18 @@ from cadpanel.terms.limits.obliqueness import Obliqueness
 
 SAME_LENGTH = 1e-6
 """Two lengths in mm, or angles in degrees, that are meant to be one number may differ by this."""
-SAME_ANGLE = 1e-6
-"""Degrees by which a patch's sweep may differ from what its corners, to the last digit of a double, enclose."""
 SAME_VOLUME = 1e-6
 """Volume in mm3 by which what two solids share may differ between two machines."""
-ON_PATCH = 1e-5
-"""Distance in mm of a corner from the patches that meet there."""
+SAME_LIMIT = 1e-5
+"""The same of what limits measure of panels alone."""
 
 
-def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[str, ...]:
+def check_report(report: ReportModel, shapes: Sequence[Built], certificate: CertificateModel) -> tuple[str, ...]:
     """One sentence for everything in a report that does not follow from the rest of it, or from its files.
 
     Args:
         report: what was read.
+        shapes: the panels that its list gives, as `recorded_shape` makes them.
         certificate: what the files beside it show now.
     """
     panels = {panel.name: panel for panel in report.panels}
@@ -51,11 +49,12 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     given = {} if rules is None else rules.features([panel.name for panel in report.panels])
     sheet = report.settings.sheet()
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    failures = [fault for panel in report.panels for fault in _patch_faults(panel)]
-    square = report.settings.ends == "square"
-    failures += [
-        fault for panel in report.panels for fault in shape_faults(panel, recorded_shape(panel, depth, square=square))
+    failures = [
+        fault for panel, shape in zip(report.panels, shapes, strict=True) for fault in shape_faults(panel, shape, depth)
     ]
+    origin = report.origin
+    if origin.kept != (report.settings.shop().origin == "keep" or not any(origin.offset)):
+        failures.append("The report's origin is called kept, or not kept, against its settings.")
     counted = Counter(panel.feature for panel in report.panels)
     if report.features != counted:
         failures.append(f"The report counts {report.features} panels by feature, its list has {dict(counted)}.")
@@ -68,51 +67,9 @@ def check_report(report: ReportModel, certificate: CertificateModel) -> tuple[st
     failures += [fault for seam in report.seams for fault in _seam_faults(seam, panels)]
     failures += _joint_faults(report, rules)
     failures += seams_left_out(report)
-    failures += _summary_faults(report, depth)
+    failures += _summary_faults(report)
     failures += _certificate_faults(report.certificate, certificate)
     return tuple(failures)
-
-
-def _patch_faults(panel: PanelModel) -> Iterator[str]:
-    corners = np.array(panel.corners)
-    for index, patch in enumerate(panel.patches):
-        own = corners[:, index : index + 2] if len(corners) == 2 else corners
-        off = float(np.abs(_distance(patch, own.reshape(-1, 3))).max())
-        if not off <= ON_PATCH:
-            yield (
-                f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) passes its corners "
-                f"at {off:.3g} mm."
-            )
-        elif isinstance(patch, ConePatchModel | CylinderPatchModel):
-            turned = _sweep(patch, corners[0, index : index + 2])
-            if not abs(turned - patch.sweep) <= SAME_ANGLE:
-                yield (
-                    f"Panel '{panel.name}': the report's {patch.kind} (patch {index + 1}) sweeps {patch.sweep:.6g} "
-                    f"degrees, its corners lie {turned:.6g} apart."
-                )
-
-
-def _sweep(patch: ConePatchModel | CylinderPatchModel, corners: Array) -> float:
-    """Angle in degrees by which the axis has to be turned about, right-handed, from the first corner to the second."""
-    axis = np.array(patch.axis)
-    offset = corners - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
-    first, second = offset - (offset @ axis)[:, None] * axis
-    return float(np.degrees(np.arctan2(np.cross(first, second) @ axis, first @ second)))
-
-
-def _distance(patch: PatchModel, points: Array) -> Array:
-    """(m,) signed distances of points (m, 3) to a patch's surface, and beyond the radii that are stated for it, mm."""
-    if not isinstance(patch, ConePatchModel | CylinderPatchModel):
-        return np.asarray((points - np.array(patch.point)) @ np.array(patch.normal))
-    offset = points - np.array(patch.apex if isinstance(patch, ConePatchModel) else patch.axis_point)
-    axis = np.array(patch.axis)
-    height = offset @ axis
-    radius = np.linalg.norm(offset - height[:, None] * axis, axis=-1)
-    beyond = np.maximum(np.maximum(patch.radius_min - radius, radius - patch.radius_max), 0.0)
-    if isinstance(patch, ConePatchModel):
-        angle = np.radians(patch.half_angle)
-        return np.asarray(np.maximum(np.abs(radius * np.cos(angle) - height * np.sin(angle)), beyond))
-    return np.asarray(np.maximum(np.abs(radius - patch.radius_max), beyond))
 
 
 def _seam_faults(seam: SeamModel, panels: dict[str, PanelModel]) -> Iterator[str]:
@@ -179,7 +136,7 @@ OF_SHAPES = (MinRadius(), FlangeWidth(), Obliqueness())
 """The limits whose measure is seen of panels alone."""
 
 
-def _summary_faults(report: ReportModel, depth: float) -> Iterator[str]:
+def _summary_faults(report: ReportModel) -> Iterator[str]:
     summary = report.summary
     worst: dict[str, float] = {
         key: max((of(seam) for seam in report.seams), default=0.0) for key, of in _OF_SEAMS.items()
@@ -189,14 +146,14 @@ def _summary_faults(report: ReportModel, depth: float) -> Iterator[str]:
         stated = float(getattr(summary, key))
         if not abs(stated - value) <= SAME_LENGTH:
             yield f"The summary's {key} is {stated:.6g}, the worst in the list is {value:.6g}."
-    shapes = [fitted_shape(panel, depth) for panel in report.panels]
+    shapes = [fitted_shape(panel) for panel in report.panels]
     moved = max(panel.moved for panel in report.panels)
     for limit in OF_SHAPES:
         if limit.rows[-1].key not in summary.model_fields_set:
             continue  # a report from before the limit was known
         least, of_list = getattr(summary, limit.rows[-1].key), float(limit.measure(Alone(shapes)).min())
         known = np.isfinite(of_list)
-        if (least is not None) != known or (known and not abs(least - of_list) <= ON_PATCH + moved):
+        if (least is not None) != known or (known and not abs(least - of_list) <= SAME_LIMIT + moved):
             yield f"The summary's {limit.rows[-1].key} is {least}, the panels in the list have {of_list:.6g}."
     yield from _tolerance_faults(report, summary)
     yield from _deviation_faults(report, summary)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.delivery.records.flat_parts import FlatPart
-from cadpanel.delivery.records.from_shape import cut_model, cut_models, fitted_model, patch_models, rows
+from cadpanel.delivery.records.from_shape import cut_model, cut_models, fitted_model, patch_models, rows, ruling_models
 from cadpanel.delivery.records.report import (
     BaselinesModel,
     OriginModel,
@@ -153,6 +153,7 @@ def _panel(result: FitResult, index: int, reference: PanelReference, built: Pane
         corners=rows(built.shape.corners()),
         fitted=fitted_model(built.fitted),
         patches=patch_models(built.shape),
+        rulings=ruling_models(built.shape),
         taken=tuple(map(tuple, taken(reference, built.fitted).tolist())),
         returns=built.returns,
         tray=built.tray,

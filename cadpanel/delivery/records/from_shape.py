@@ -10,11 +10,17 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.delivery.records.blanks import CutModel, Pair
 from cadpanel.delivery.records.jsonfile import Vector
-from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
+from cadpanel.delivery.records.patches import (
+    ConePatchModel,
+    CylinderPatchModel,
+    PatchModel,
+    PlanePatchModel,
+    RulingModel,
+)
 from cadpanel.delivery.records.report import FittedModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, lifted, radius_range
 from cadpanel.geometry.panel import Panel
-from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.trays import TrayShape
 
@@ -77,7 +83,36 @@ def _of_folds(shape: TrayShape) -> tuple[Pair | None, ...]:
 
 def fitted_model(shape: Panel) -> FittedModel:
     """A panel as it was fitted: its corners, and the planes that cut its ends."""
-    return FittedModel(corners=rows(shape.corners()), cuts=cut_models(shape))
+    return FittedModel(corners=rows(shape.corners()), cuts=cut_models(shape), rulings=ruling_models(shape))
+
+
+@singledispatch
+def ruling_models(_shape: Panel) -> tuple[RulingModel, ...]:
+    """The rulings of a panel with the patches between them; none of one that is no chain of patches."""
+    return ()
+
+
+@ruling_models.register
+def _along_chain(shape: PanelShape) -> tuple[RulingModel, ...]:
+    return tuple(
+        RulingModel(point=vector(point), direction=vector(direction), normal=vector(normal), **_numbers(patch))
+        for point, direction, normal, patch in zip(*shape.rulings(), (*shape.patches, None), strict=True)
+    )
+
+
+@ruling_models.register
+def _of_flat_part(shape: TrayShape) -> tuple[RulingModel, ...]:
+    return ruling_models(shape.flat)
+
+
+def _numbers(patch: Patch | None) -> dict[str, float]:
+    if not isinstance(patch, ConePatch):
+        return {}
+    return {
+        "radius": patch.radius,
+        "half_angle": math.degrees(patch.half_angle),
+        "sweep": math.degrees(patch.sweep),
+    }
 
 
 def cut_models(shape: Panel) -> tuple[CutModel, ...]:

@@ -11,6 +11,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
+from cadpanel.sizes import refuse_huge
 
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
@@ -75,6 +76,7 @@ def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) ->
     Raises:
         DeliveryError: the file cannot be read, is not JSON, or is not such a record; one sentence says where.
     """
+    refuse_huge(path, DeliveryError)
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:

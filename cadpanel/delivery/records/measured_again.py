@@ -17,7 +17,6 @@ from cadpanel.delivery.records.report import ReferenceModel, ReportModel
 from cadpanel.delivery.records.to_shape import fitted_shape
 from cadpanel.errors import DeliveryError, SettingsError
 from cadpanel.fitting.measures.fit import Measures, measure
-from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceSettings
 from cadpanel.terms.limits.catalogue import LIMITS
@@ -50,9 +49,7 @@ def measured_faults(report: ReportModel, reference: Reference) -> Iterator[str]:
     if len(reference.seams) != len(report.seams):
         yield f"'{reference.source}' has {len(reference.seams)} seams, the report lists {len(report.seams)}."
         return
-    sheet = report.settings.sheet()
-    depth = sheet_depth(sheet.thickness, sheet.skin_side)
-    found = measure([fitted_shape(panel, depth) for panel in report.panels], reference)
+    found = measure([fitted_shape(panel) for panel in report.panels], reference)
     moved = max(panel.moved for panel in report.panels)
     of_panels = _of_panels(found)
     for index, panel in enumerate(report.panels):

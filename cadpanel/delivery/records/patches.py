@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from cadpanel.delivery.records.jsonfile import Direction, NonNegative, Record, Vector
 
@@ -55,6 +55,33 @@ class CylinderPatchModel(Record):
     radius_min: NonNegative
     radius_max: NonNegative
     sweep: Annotated[float, Field(ge=-360.0, le=360.0)]
+
+
+class RulingModel(Record):
+    """A straight line of a panel's skin, and the patch that begins at it: by these numbers the panel is built anew.
+
+    Attributes:
+        point: on the line, mm.
+        direction: unit vector along it, from end 0 to end 1.
+        normal: unit normal of the skin there, outwards.
+        radius: of a round patch, mm along the normal from the point to its axis; positive where it is convex outwards;
+            None of a flat one, and at the last ruling, as are the next two.
+        half_angle: degrees, positive where it widens along the direction.
+        sweep: by which it turns about its axis to the next ruling, degrees, of the radius' sign.
+    """
+
+    point: Vector
+    direction: Direction
+    normal: Direction
+    radius: float | None = None
+    half_angle: float | None = None
+    sweep: float | None = None
+
+    @model_validator(mode="after")
+    def _check_that_a_bend_is_whole(self) -> RulingModel:
+        if len({number is None for number in (self.radius, self.half_angle, self.sweep)}) > 1:
+            raise ValueError("a bend has a radius, a half angle and a sweep")
+        return self
 
 
 PatchModel = Annotated[PlanePatchModel | ConePatchModel | CylinderPatchModel, Field(discriminator="kind")]

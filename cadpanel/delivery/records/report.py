@@ -23,7 +23,7 @@ from cadpanel.delivery.records.jsonfile import (
     with_keys,
     write_json,
 )
-from cadpanel.delivery.records.patches import PatchModel
+from cadpanel.delivery.records.patches import PatchModel, RulingModel
 from cadpanel.delivery.records.settings import SettingsModel
 from cadpanel.terms.limits.catalogue import LIMITS
 
@@ -113,10 +113,26 @@ class FittedModel(Record):
     Attributes:
         corners: as `PanelModel.corners`, mm; by them gaps are measured.
         cuts: the planes that cut end 0 and end 1; none of a polygon.
+        rulings: as `PanelModel.rulings`.
     """
 
     corners: tuple[tuple[Vector, ...], ...]
     cuts: tuple[CutModel, ...] = ()
+    rulings: tuple[RulingModel, ...] = ()
+
+    def check_that_all_is_there(self, *, polygon: bool) -> None:
+        """Refuse rows, cuts and rulings that do not belong together.
+
+        Raises:
+            ValueError: saying so.
+        """
+        rows = [len(row) for row in self.corners]
+        whole = rows == rows[:1] and rows[0] >= 3 if polygon else len(rows) == 2 and rows[0] == rows[1] >= 2
+        rulings = len(self.rulings) in ((0,) if polygon else (0, *rows[:1]))
+        if not (whole and rulings and len(self.cuts) == (0 if polygon else 2)):
+            raise ValueError(
+                f"corners in rows of {rows}, {len(self.cuts)} cuts and {len(self.rulings)} rulings make no fitted panel"
+            )
 
 
 class PanelModel(Record):
@@ -141,6 +157,8 @@ class PanelModel(Record):
             of a chain, one row round a polygon. Half a joint back from the seams.
         fitted: the same before it was cut back; None in reports from before panels were.
         patches: in the order of the walk across the panel, as they are built.
+        rulings: its straight lines in the order of the walk, to the last digit, each with the patch that begins there;
+            none of a polygon. What else is told of its shape follows from them and its cuts.
         taken: which part of the reference each patch stands for: the places where patches begin and end, mm from side 0
             along the reference's end 0 and end 1; empty for polygons.
         moved: how far a corner was moved from where the fit had it, mm; 0 unless a cone became a cylinder.
@@ -177,6 +195,7 @@ class PanelModel(Record):
     corners: tuple[tuple[Vector, ...], ...]
     fitted: FittedModel | None = None
     patches: tuple[PatchModel, ...]
+    rulings: tuple[RulingModel, ...] = ()
     taken: tuple[tuple[NonNegative, ...], ...] = ()
     moved: NonNegative = 0.0
     notes: tuple[str, ...] = ()
@@ -197,6 +216,12 @@ class PanelModel(Record):
         polygon = len(rows) == 1 and rows[0] >= 3 and len(self.patches) == 1
         if not (chain or polygon):
             raise ValueError(f"corners in rows of {rows} do not fit {len(self.patches)} patches")
+        if self.other_face and [len(row) for row in self.other_face] != rows:
+            raise ValueError("the other face has other corners than the skin")
+        if self.rulings and (polygon or len(self.rulings) != rows[0]):
+            raise ValueError(f"{len(self.rulings)} rulings do not fit corners in rows of {rows}")
+        if self.fitted is not None:
+            self.fitted.check_that_all_is_there(polygon=polygon)
         return self
 
 

@@ -8,20 +8,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel, PatchModel, PlanePatchModel
-from cadpanel.delivery.records.report import PanelModel
+from cadpanel.delivery.records.blanks import CutModel
+from cadpanel.delivery.records.patches import PatchModel, RulingModel
+from cadpanel.delivery.records.report import PanelModel, ReportModel
 from cadpanel.errors import DeliveryError
-from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.returns import PATCHES, SIDES, ReturnRule
 from cadpanel.geometry.shape import PanelShape, PolygonShape
-from cadpanel.geometry.sheet_checks import skin_side_of
+from cadpanel.geometry.sheet_checks import sheet_depth, skin_side_of
 from cadpanel.geometry.trays import TrayShape, folded_tray
-from cadpanel.geometry.vectors import cross, unit
+
+Built = PanelShape | PolygonShape | TrayShape
+"""A panel as a report tells of it."""
 
 
-def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape | TrayShape:
-    """The panel as it was built, from its corners, patches and cuts; good to some 1e-9 mm.
+def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> Built:
+    """The panel as it was built, to the last digit: from its rulings and cuts, or from a polygon's corners and plane.
 
     Of a flat panel that is folded, what it was before tells where the walls of its joints stand.
 
@@ -31,7 +33,7 @@ def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> 
         square: whether the sheet's walls stand square to it.
 
     Raises:
-        DeliveryError: the record does not say how the panel is cut, or what part it is.
+        DeliveryError: the record does not say how the panel runs, how it is cut, or what part it is.
     """
     if panel.tray is None:
         return _before_folding(panel, depth, square=square)
@@ -41,49 +43,88 @@ def recorded_shape(panel: PanelModel, depth: float, *, square: bool = False) -> 
 
 
 def _before_folding(panel: PanelModel, depth: float, *, square: bool = False) -> PanelShape | PolygonShape:
-    corners = np.array(panel.corners)
-    other = np.array(panel.other_face)
-    if (
-        panel.blank is None
-        or panel.mass is None
-        or len(panel.cuts) != (0, 2)[len(corners) - 1]
-        or other.shape != corners.shape
-    ):
-        raise DeliveryError(
-            f"The report tells of panel '{panel.name}' without its blank, mass, cuts or other face, as older versions "
-            "did: write the delivery again."
-        )
+    corners, other = np.array(panel.corners), np.array(panel.other_face)
+    if panel.blank is None or panel.mass is None or other.shape != corners.shape:
+        raise _too_old(panel)
     moves = (other - corners) / depth
     if len(corners) == 1:
-        (plane,) = panel.patches
-        assert isinstance(plane, PlanePatchModel)
-        return PolygonShape(
-            name=panel.name,
-            feature=panel.feature,
-            outline=corners[0],
-            normal=np.array(plane.normal),
-            posts=None if square else moves[0],
-            square=square,
-        )
-    directions = unit(corners[1] - corners[0])
-    normals = np.empty_like(directions)
-    patches: list[Patch] = []
-    for index, model in enumerate(panel.patches):
-        patch, normals[index] = _patch(model, corners[0, index], directions[index])
-        patches.append(patch)
-    normals[-1] = _last_normal(patches[-1], corners[0, -2], directions[-2], normals[-2])
-    cuts = np.array([cut.normal for cut in panel.cuts])
+        posts = None if square else moves[0]
+        return _polygon(panel, corners[0], posts, square=square)
+    shape = _chain(panel, panel.rulings, panel.cuts)
+    if square:
+        return shape.made_square()
+    return shape.trimmed(*shape.cuts(), _side_leans(moves, shape.binormals(), shape.patches))
+
+
+def recorded_shapes(report: ReportModel) -> list[Built]:
+    """The panels of a report's list.
+
+    Raises:
+        DeliveryError: a record does not say how its panel runs.
+    """
+    sheet = report.settings.sheet()
+    depth = sheet_depth(sheet.thickness, sheet.skin_side)
+    return [recorded_shape(panel, depth, square=sheet.ends == "square") for panel in report.panels]
+
+
+def fitted_shape(panel: PanelModel) -> PanelShape | PolygonShape:
+    """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
+
+    Raises:
+        DeliveryError: the record does not say how the panel runs or how it is cut.
+    """
+    if panel.fitted is None:
+        raise _too_old(panel)
+    corners = np.array(panel.fitted.corners)
+    if len(corners) == 1:
+        return _polygon(panel, corners[0], None)
+    return _chain(panel, panel.fitted.rulings, panel.fitted.cuts)
+
+
+def _polygon(panel: PanelModel, outline: Array, posts: Array | None, *, square: bool = False) -> PolygonShape:
+    (plane,) = panel.patches
+    if plane.kind != "plane":
+        raise DeliveryError(f"The report tells of panel '{panel.name}' as a polygon that is bent: write it again.")
+    normal = np.array(plane.normal)
+    return PolygonShape(
+        name=panel.name, feature=panel.feature, outline=outline, normal=normal, posts=posts, square=square
+    )
+
+
+def _chain(panel: PanelModel, rulings: Sequence[RulingModel], cuts: Sequence[CutModel]) -> PanelShape:
+    if len(rulings) < 2 or len(cuts) != 2:
+        raise _too_old(panel)
+    points, directions, normals = (
+        np.array([getattr(ruling, key) for ruling in rulings]) for key in ("point", "direction", "normal")
+    )
+    cut_normals = np.array([cut.normal for cut in cuts])
     return PanelShape(
         name=panel.name,
         feature=panel.feature,
-        points=corners[0],
+        points=points,
         directions=directions,
         normals=normals,
-        patches=tuple(patches),
-        cut_points=np.array([cut.offset for cut in panel.cuts])[:, None] * cuts,
-        cut_normals=cuts,
-        side_leans=np.zeros(2) if square else _side_leans(moves, cross(directions, normals), patches),
-        square=square,
+        patches=tuple(_patch(ruling) for ruling in rulings[:-1]),
+        cut_points=np.array([cut.offset for cut in cuts])[:, None] * cut_normals,
+        cut_normals=cut_normals,
+    )
+
+
+def _patch(ruling: RulingModel) -> Patch:
+    if ruling.radius is None or ruling.half_angle is None or ruling.sweep is None:
+        return PlanePatch()
+    return ConePatch(
+        radius=ruling.radius,
+        half_angle=math.radians(ruling.half_angle),
+        sweep=math.radians(ruling.sweep),
+        kind="cone" if ruling.half_angle else "cylinder",
+    )
+
+
+def _too_old(panel: PanelModel) -> DeliveryError:
+    return DeliveryError(
+        f"The report tells of panel '{panel.name}' without its rulings, cuts, blank, mass or other face, as older "
+        "versions did: write the delivery again."
     )
 
 
@@ -117,26 +158,8 @@ def unfolded(panel: PanelModel) -> PanelModel:
     """The record of a panel as it was built, but for its returns."""
     own = slice(*unfolded_rulings(panel))
     rows = {"corners": tuple(r[own] for r in panel.corners), "other_face": tuple(r[own] for r in panel.other_face)}
-    return panel.model_copy(update={**rows, "patches": fitted_patches(panel), "returns": (), "tray": None})
-
-
-def fitted_shape(panel: PanelModel, depth: float) -> PanelShape | PolygonShape:
-    """The panel as it was fitted, before it was cut back, as gaps and limits are measured on it.
-
-    Args:
-        panel: the record.
-        depth: where the sheet's other face lies, mm along the skin's normal.
-
-    Raises:
-        DeliveryError: the record does not say how the panel is cut, or what part it is.
-    """
-    if panel.fitted is None:
-        return _before_folding(panel, depth)
-    own = unfolded(panel)
-    moves = np.array(own.other_face) - np.array(own.corners)
-    other = tuple(tuple(map(tuple, row)) for row in (np.array(panel.fitted.corners) + moves).tolist())
-    uncut = {"corners": panel.fitted.corners, "cuts": panel.fitted.cuts, "other_face": other}
-    return _before_folding(own.model_copy(update=uncut), depth)
+    kept = {"rulings": panel.rulings[own], "patches": fitted_patches(panel)}
+    return panel.model_copy(update={**rows, **kept, "returns": (), "tray": None})
 
 
 def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:
@@ -144,32 +167,3 @@ def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Arr
     flat = [not isinstance(patches[place], ConePatch) for place in (0, -1)]
     leans = [moves[:, place].mean(axis=0) @ binormals[place] for place in (0, -1)]
     return np.where(flat, leans, 0.0)
-
-
-def _patch(model: PatchModel, point: Array, direction: Array) -> tuple[Patch, Array]:
-    """A patch and the skin's normal at its first ruling."""
-    if not isinstance(model, ConePatchModel | CylinderPatchModel):
-        return PlanePatch(), np.array(model.normal)
-    axis = np.array(model.axis)
-    ahead = math.copysign(1.0, float(axis @ direction))
-    axis = ahead * axis
-    to = point - np.array(model.apex if isinstance(model, ConePatchModel) else model.axis_point)
-    out = to - (to @ axis) * axis
-    sweep = math.radians(ahead * model.sweep)
-    level = math.copysign(float(np.linalg.norm(out)), sweep)
-    radial = out / level
-    half_angle = 0.0
-    if isinstance(model, ConePatchModel):
-        # It widens along the axis as it was recorded, which led away from the apex.
-        half_angle = math.radians(ahead * math.copysign(model.half_angle, level))
-    cosine, sine = math.cos(half_angle), math.sin(half_angle)
-    normal = cosine * radial - sine * axis
-    return ConePatch(radius=level / cosine, half_angle=half_angle, sweep=sweep, kind=model.kind), normal
-
-
-def _last_normal(patch: Patch, point: Array, direction: Array, normal: Array) -> Array:
-    if not isinstance(patch, ConePatch):
-        return normal
-    frame = axis_frame(point, direction, normal, patch)
-    radial = frame.radials(np.array([patch.sweep]))[0]
-    return np.asarray(math.cos(patch.half_angle) * radial - math.sin(patch.half_angle) * frame.axis)

@@ -19,6 +19,7 @@ from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.rules.rule import Posed, Rule
 from cadpanel.reference.model import Reference
 from cadpanel.reference.named import near_names
+from cadpanel.sizes import refuse_huge
 
 # A gap is no longer than so many times the root of the sum of its parts' squares.
 _MORE = 2.0
@@ -112,6 +113,7 @@ def rules_of(value: object) -> Rules | None:
 
 
 def _read(path: Path) -> Mapping[str, Any]:
+    refuse_huge(path, SettingsError)
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:

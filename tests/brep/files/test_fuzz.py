@@ -4,7 +4,6 @@ The files are read by the guarded interpreter, which the kernel may crash; this 
 """
 
 import random
-import re
 
 import numpy as np
 import pytest
@@ -20,6 +19,7 @@ from cadpanel.brep.read import read_raw_panels
 from cadpanel.brep.survey import survey
 from cadpanel.errors import CadpanelError, DeliveryError
 from cadpanel.reference.settings import ReferenceSettings
+from tests.attack.damage import NUMBER, damaged
 from tests.certified import Delivery, strip
 from tests.drawn import curve
 from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
@@ -30,10 +30,6 @@ VARIANTS = cases(12, 110)  # of each of six files, so 660 in all in a thorough r
 SECONDS = 3.0  # after which a reader counts as hanging
 LONGEST_SENTENCE = 1000
 pytestmark = pytest.mark.usefixtures("forked_readers")  # or the kernel would be loaded for every crash
-
-NUMBERS = re.compile(rb"(?<=[\s(,])-?\d+\.?\d*(?=[\s,)])")
-REFERENCES = re.compile(rb"#\d+")
-CUT, FLIP, TYPE, DROP, NUMBER, SWAP = range(6)
 
 
 @pytest.fixture(scope="module")
@@ -59,33 +55,6 @@ def originals(folder):
     written["sphere.3dm"] = folder / "sphere.3dm"
     assert file.Write(str(written["sphere.3dm"]), 8)
     return {name: path.read_bytes() for name, path in written.items()}
-
-
-def damaged(data, seed):
-    """One of six kinds of damage, always the same for the same seed."""
-    chance, text = random.Random(seed), bytearray(data)
-    kind, times = seed % 6, chance.choice((1, 1, 3, 12))
-    if kind == CUT:
-        return bytes(text[: chance.randrange(1, len(text))])
-    for _ in range(times):
-        if not text:
-            break
-        if kind == FLIP:
-            text[chance.randrange(len(text))] ^= 1 << chance.randrange(8)
-        elif kind == TYPE:
-            text[chance.randrange(len(text))] = chance.choice(b"0123456789.-E#,()$*'\n ")
-        elif kind == DROP:
-            start = chance.randrange(len(text))
-            del text[start : start + chance.randrange(1, 200)]
-        else:
-            found = list((NUMBERS if kind == NUMBER else REFERENCES).finditer(bytes(text)))
-            if not found:
-                text[chance.randrange(len(text))] = 0
-                continue
-            place = chance.choice(found)
-            other = chance.choice((b"0", b"-1", b"1e99", b"300", b"99999999", b"-0.", chance.choice(found).group()))
-            text[place.start() : place.end()] = chance.choice(found).group() if kind == SWAP else other
-    return bytes(text)
 
 
 @pytest.mark.parametrize(

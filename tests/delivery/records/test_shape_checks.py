@@ -3,7 +3,7 @@
 import pytest
 
 from cadpanel.delivery.records.shape_checks import shape_faults
-from cadpanel.delivery.records.to_shape import fitted_shape, recorded_shape
+from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.geometry.sheet_checks import sheet_depth
 from tests.flat_parts import SHEET, strip_records
 
@@ -16,7 +16,7 @@ def record():
 
 
 def faults(record):
-    return list(shape_faults(record, recorded_shape(record, DEPTH)))
+    return list(shape_faults(record, recorded_shape(record, DEPTH), DEPTH))
 
 
 def test_what_was_recorded_holds(record):
@@ -34,13 +34,13 @@ def test_a_radius_that_is_not_the_patchs_is_named(record, key):
     place = next(i for i, patch in enumerate(patches) if patch.kind != "plane")
     patches[place] = patches[place].model_copy(update={key: getattr(patches[place], key) + 1e-4})
     (said,) = faults(record.model_copy(update={"patches": tuple(patches)}))
-    assert f"(patch {place + 1}) goes from radius" in said
+    assert f"(patch {place + 1}) is not that of its rulings" in said
 
 
 def test_a_cone_is_straightened_by_no_more_than_its_size_allows(record):
-    (said,) = faults(record.model_copy(update={"moved": 1.0}))
-    assert "straightened by 1 mm, one of its size moves by 0.0" in said
-    assert faults(record.model_copy(update={"moved": 1e-3})) == []
+    without, beyond = faults(record.model_copy(update={"moved": 1.0}))
+    assert "straightened, and it has no cylinder" in without
+    assert "straightened by 1 mm, one of its size moves by 0.0" in beyond
 
 
 @pytest.mark.parametrize(("row", "corner"), [(0, 0), (0, 1), (1, 2)])
@@ -49,10 +49,26 @@ def test_a_fitted_corner_off_its_cut_or_its_ruling_is_named(record, row, corner)
     rows[row][corner][0] += 1.0
     moved = record.fitted.model_copy(update={"corners": tuple(tuple(map(tuple, own)) for own in rows)})
     said = faults(record.model_copy(update={"fitted": moved}))
-    assert said
-    assert all("of the report's fitted panel lies" in one for one in said)
+    assert ["of the report's fitted panel lies" in one for one in said] == [True]
 
 
-def test_the_fitted_shape_has_the_fitted_corners(record):
-    shape = fitted_shape(record, DEPTH)
-    assert abs(shape.corners() - record.fitted.corners).max() <= 1e-6
+def other_ruling(rulings, place, **update):
+    return (*rulings[:place], rulings[place].model_copy(update=update), *rulings[place + 1 :])
+
+
+@pytest.mark.parametrize("place", range(4))
+@pytest.mark.parametrize("of", ["panel", "fitted"])
+def test_a_ruling_that_is_not_the_panels_is_named(record, place, of):
+    own = record if of == "panel" else record.fitted
+    x, y, z = own.rulings[place].point
+    other = own.model_copy(update={"rulings": other_ruling(own.rulings, place, point=(x + 1e-3, y + 1e-3, z - 2e-3))})
+    assert faults(other if of == "panel" else record.model_copy(update={"fitted": other}))
+
+
+@pytest.mark.parametrize("key", ["radius", "half_angle", "sweep"])
+@pytest.mark.parametrize("of", ["panel", "fitted"])
+def test_a_bend_that_is_not_the_panels_is_named(record, key, of):
+    own = record if of == "panel" else record.fitted
+    changed = other_ruling(own.rulings, 1, **{key: getattr(own.rulings[1], key) * (1.0 + 1e-6)})
+    other = own.model_copy(update={"rulings": changed})
+    assert faults(other if of == "panel" else record.model_copy(update={"fitted": other}))

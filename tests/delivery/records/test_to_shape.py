@@ -5,19 +5,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cadpanel.delivery.records.from_shape import patch_models, rows, vector
+from cadpanel.delivery.records.from_shape import patch_models, rows, ruling_models, vector
 from cadpanel.delivery.records.report import PanelModel
 from cadpanel.delivery.records.to_shape import recorded_shape
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.shape import PolygonShape
+from cadpanel.geometry.shape import PanelShape, PolygonShape
+from cadpanel.geometry.sheet_checks import check_buildable
 from tests.chains import FEATURES
 from tests.flat_panels import panels
 from tests.joined import leaning, quadrilaterals
-from tests.shapes import random_panel
+from tests.shapes import random_panel, walk
 
 DEPTH = -3.0  # mm, where the sheet's other face lies
-CLOSE = 1e-8  # mm; of a slender cone the apex lies kilometres away
+CLOSE = 1e-9  # mm
 
 
 def recorded(shape: Any, depth: float = DEPTH) -> PanelModel:
@@ -31,6 +32,7 @@ def recorded(shape: Any, depth: float = DEPTH) -> PanelModel:
         corners=rows(shape.corners()),
         other_face=rows(shape.offset(depth).corners()),
         patches=patch_models(shape),
+        rulings=ruling_models(shape),
         cuts=tuple(
             type("Cut", (), {"normal": vector(normal), "offset": float(point @ normal)})
             for point, normal in zip(points, normals, strict=True)
@@ -89,8 +91,39 @@ def test_panels_whose_walls_lean_come_back(depth):
         assert other.offset(5.0).outline == pytest.approx(one.offset(5.0).outline, abs=CLOSE)
 
 
+@pytest.mark.parametrize("radius", [1e3, 1e5, 1e7])
+def test_cones_that_are_all_but_flat_and_far_away_can_be_built_of_their_record(radius):
+    sweep = 900.0 / radius
+    patches: list[Any] = [ConePatch(radius=radius, half_angle=1e-5 * k, sweep=sweep) for k in (1, -2, 1)]
+    direction, normal = (np.linalg.qr(np.random.default_rng(7).normal(size=(3, 3)))[0][:, k] for k in (0, 1))
+    points, directions, normals = walk(
+        patches, [(0.0, 0.0)] * 3, np.array([600_000.0, -80_000.0, 9000.0]), direction, normal
+    )
+    middle, ends = points.mean(axis=0), np.array([[-1500.0], [1500.0]])
+    shape = PanelShape(
+        name="A-01",
+        feature="cone-spline",
+        points=points,
+        directions=directions,
+        normals=normals,
+        patches=tuple(patches),
+        cut_points=middle + ends * direction,
+        cut_normals=np.array([direction, direction]),
+    )
+    again: Any = recorded_shape(recorded(shape), DEPTH)
+    check_buildable(again, -DEPTH)
+    assert again.corners() == pytest.approx(shape.corners(), abs=CLOSE)
+
+
 def test_a_record_of_an_older_version_is_refused() -> None:
     record = recorded(random_panel(1))
-    for update in ({"blank": None}, {"mass": None}, {"cuts": ()}, {"cuts": record.cuts[:1]}, {"other_face": ()}):
-        with pytest.raises(DeliveryError, match="panel 'A-01' without its blank, mass, cuts or other face"):
+    for update in (
+        {"blank": None},
+        {"mass": None},
+        {"cuts": ()},
+        {"cuts": record.cuts[:1]},
+        {"other_face": ()},
+        {"rulings": ()},
+    ):
+        with pytest.raises(DeliveryError, match="panel 'A-01' without its rulings, cuts, blank, mass or other face"):
             recorded_shape(record.model_copy(update=update), DEPTH)

@@ -1,0 +1,44 @@
+"""What a report says that nothing in its folder can prove, by the words of people and by the report's keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unproved:
+    """Something that is said and not proved.
+
+    Attributes:
+        what: in the words of people.
+        keys: of the report, with a star for what is counted or named.
+    """
+
+    what: str
+    keys: tuple[str, ...]
+
+
+BY_REFERENCE: tuple[Unproved, ...] = (
+    Unproved(what="deviation", keys=("panels.*.rms_deviation", "panels.*.max_deviation", "summary.rms_deviation")),
+    Unproved(what="Hausdorff distance", keys=("panels.*.hausdorff",)),
+    Unproved(what="drift", keys=("panels.*.*drift*", "summary.drift_*_percent")),
+    Unproved(what="turn and unevenness of seams", keys=("seams.*.turn", "seams.*.unevenness")),
+)
+"""What only the reference can tell."""
+BY_A_FIT: tuple[Unproved, ...] = (
+    Unproved(what="what other methods reach", keys=("baselines*",)),
+    Unproved(what="what limits cost", keys=("solve*", "seams.*.price")),
+    Unproved(what="what the bend was taken from", keys=("panels.*.taken*",)),
+)
+"""What only another fit could tell."""
+IN_NO_FILE: tuple[Unproved, ...] = (
+    Unproved(what="notes", keys=("panels.*.notes*", "reference.notes*")),
+    Unproved(what="what was asked of the fit", keys=("settings.*", "reference.file", "reference.reading*")),
+    Unproved(what="how long it took", keys=("timing*",)),
+)
+"""What was so when the delivery was made, and has left nothing else behind."""
+
+
+def words(*parts: tuple[Unproved, ...]) -> tuple[str, ...]:
+    """What people call it."""
+    return tuple(one.what for part in parts for one in part)

@@ -190,7 +190,7 @@ class Barriers:
                 row = by_vector * jacobian
                 if straight:
                     row += out * (radial @ jacobian)
-                row = row.reshape(groups, q * d, -1)
+                row = row.reshape(groups, q * d, jacobian.shape[-1])
                 mine.append(row)
                 scatter.add(normal.gradient, (pulls @ jacobian.reshape(row.shape))[:, 0])
                 scatter.add(normal.diagonal, np.swapaxes(row, 1, 2) @ row)

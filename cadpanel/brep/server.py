@@ -23,9 +23,9 @@ from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage,
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
 from cadpanel.brep.proof.archive import kept_facts
 from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.proof.finding_back import find_back
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
-from cadpanel.brep.proof.solids_back import find_back
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cadpanel.delivery.folder import delivery_folder, refuse_if_taken
 from cadpanel.delivery.manifest import changed_files
@@ -17,10 +18,12 @@ from cadpanel.jobs.archive import unpacked
 from cadpanel.jobs.engine.engine import Engine, TellOf
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.resolved import is_a_job, job_text
-from cadpanel.jobs.results import Results
 from cadpanel.jobs.summary import RowModel, State, SummaryModel, row_of, write_summary
 from cadpanel.jobs.task import Task
 from cadpanel.jobs.work import MET, MISSED, Made
+
+if TYPE_CHECKING:
+    from cadpanel.jobs.results import Results
 
 Part = tuple[Region, Task]
 TellRow = Callable[[RowModel], None]

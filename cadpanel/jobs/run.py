@@ -15,6 +15,7 @@ from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.records.stock import stock_shortfall
 from cadpanel.errors import DeliveryError
 from cadpanel.jobs.archive import unpacked
+from cadpanel.jobs.building import BUILDING, put_together
 from cadpanel.jobs.engine.engine import Engine, TellOf
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.resolved import is_a_job, job_text
@@ -78,6 +79,8 @@ def run_job(
             run.came(made, [part for part in missing if part[1].key == made.key])
     finally:
         summary = run.summary()
+        written, said = put_together(place.out, [row.region for row in summary.rows if row.panels is not None])
+        summary = summary.model_copy(update={"assembly": BUILDING if written else None, "unassembled": said})
         write_summary(summary, place.out)
     return summary
 

@@ -47,7 +47,7 @@ _MOST_OF_IT, _MOST_SEAMS = 0.5, 3
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent", "annealing": "annealing"}
 
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str], str], ...] = (
-    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners that should meet"),
+    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners and bend lines"),
     ("Largest seam gap, mm", lambda s: length(s.max_seam_gap), "along the whole seam"),
     ("  width", lambda s: length(s.max_width), "joint too wide or narrow"),
     ("  step", lambda s: length(s.max_step), "one panel stands out"),

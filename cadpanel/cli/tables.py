@@ -129,7 +129,7 @@ def print_report(report: ReportModel, folder: Path, took: float, *, verbose: boo
         out.print(Text(line))
     if (folder / PAGE).is_file():
         out.print(Text(f"Look at it: cadpanel view {folder}"), soft_wrap=True)
-    out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+    out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)}; the rest to start)"), soft_wrap=True)
 
 
 def _closing_table(report: ReportModel, *, verbose: bool) -> Table:

@@ -24,6 +24,7 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 from cadpanel.studies.prepared import Prepare, unprepared
 
+TOO_LARGE = "a blank fits no sheet"
 MOST = 200
 """Panels along a strip at most, where nothing else is said."""
 # The number that is tried first, fits of every panel alone at most, and of all panels at once.
@@ -64,7 +65,7 @@ class Tried:
         """As a list of what was tried names it."""
         if self.max_deviation is None or self.gap is None:
             return f"{self.count} (no fit)"
-        word = "held" if self.held else "not held"
+        word = "held" if self.held else TOO_LARGE if self.missed == TOO_LARGE else "not held"
         return f"{self.count} ({word}: {self.max_deviation:.3g} mm off at most, gaps up to {self.gap:.3g} mm)"
 
 
@@ -253,7 +254,7 @@ class _Search:
             held=held,
             max_deviation=float(measures.max_deviation.max()),
             gap=max(measures.max_corner_gap, measures.max_seam_gap),
-            missed=result.shortfall() or ("" if held else "a blank fits no sheet"),
+            missed=result.shortfall() or ("" if held else TOO_LARGE),
         )
         rank = _misses(result, held=held)
         if self._rank is None or rank < self._rank:

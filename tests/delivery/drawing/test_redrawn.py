@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from cadpanel.delivery.drawing.dxf import MARK, Frame, dxf_bytes
-from cadpanel.delivery.drawing.entities import Circle, Contour, Line, Text
+from cadpanel.delivery.drawing.entities import Circle, Contour, Entity, Line, Text
 from cadpanel.delivery.drawing.redrawn import holds
 
 ROUND = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.3], [100.0, 50.0, 0.0]])
-DRAWING = (
+DRAWING: tuple[Entity, ...] = (
     Contour("CUT", ROUND),
     Circle("CUT", np.array([50.0, 10.0]), 3.0),
     Line("BEND", np.array([20.0, 0.0]), np.array([20.0, 10.0])),

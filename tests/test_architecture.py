@@ -15,6 +15,7 @@ import pytest
 from importlinter.cli import lint_imports
 
 import cadpanel
+from tests.thorough import THOROUGH
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "cadpanel"
@@ -59,24 +60,27 @@ def broken_contracts(folder: Path) -> set[str]:
     return {line.partition(" BROKEN")[0] for line in answer.stdout.splitlines() if " BROKEN" in line}
 
 
+WRONG_IMPORTS = [
+    ("geometry", "cadpanel.features", "Imports go downwards only"),
+    ("reference", "cadpanel.brep", "Imports go downwards only"),
+    ("errors", "cadpanel.geometry", "Imports go downwards only"),
+    ("solver", "cadpanel.terms", "The solver stands beside the layers"),
+    ("features", "cadpanel.solver", "Only the terms and the fit call the solver"),
+    ("delivery", "OCP.gp", "Only brep imports the CAD kernel"),
+    ("fitting", "build123d", "Only brep imports the CAD kernel"),
+    ("fitting", "cadpanel.brep", "Imports go downwards only"),
+    ("studies", "cadpanel.delivery", "Imports go downwards only"),
+    ("brep/files", "cadpanel.brep.cutting", "Inside brep, too"),
+    ("brep/kernel", "cadpanel.brep.faces", "Inside brep, too"),
+    ("brep/isolation", "OCP.gp", "Only brep imports the CAD kernel"),
+    ("fitting/measures", "cadpanel.fitting.run", "Inside fitting, too"),
+    ("fitting/measures", "cadpanel.terms.state", "What is measured hangs on panels and references"),
+]
+
+
 @pytest.mark.parametrize(
     ("layer", "wrong_import", "contract"),
-    [
-        ("geometry", "cadpanel.features", "Imports go downwards only"),
-        ("reference", "cadpanel.brep", "Imports go downwards only"),
-        ("errors", "cadpanel.geometry", "Imports go downwards only"),
-        ("solver", "cadpanel.terms", "The solver stands beside the layers"),
-        ("features", "cadpanel.solver", "Only the terms and the fit call the solver"),
-        ("delivery", "OCP.gp", "Only brep imports the CAD kernel"),
-        ("fitting", "build123d", "Only brep imports the CAD kernel"),
-        ("fitting", "cadpanel.brep", "Imports go downwards only"),
-        ("studies", "cadpanel.delivery", "Imports go downwards only"),
-        ("brep/files", "cadpanel.brep.cutting", "Inside brep, too"),
-        ("brep/kernel", "cadpanel.brep.faces", "Inside brep, too"),
-        ("brep/isolation", "OCP.gp", "Only brep imports the CAD kernel"),
-        ("fitting/measures", "cadpanel.fitting.run", "Inside fitting, too"),
-        ("fitting/measures", "cadpanel.terms.state", "What is measured hangs on panels and references"),
-    ],
+    WRONG_IMPORTS if THOROUGH else WRONG_IMPORTS[::4],
 )
 def test_a_wrong_import_is_caught(tmp_path: Path, layer: str, wrong_import: str, contract: str) -> None:
     shutil.copytree(PACKAGE, tmp_path / "cadpanel", ignore=shutil.ignore_patterns("__pycache__"))

@@ -17,7 +17,7 @@ from cadpanel.cli import main as program
 from cadpanel.cli.examples import EXAMPLES as HELP
 from cadpanel.fitting.settings import FitSettings
 from examples.options import with_options
-from tests.thorough import thorough
+from tests.thorough import cases, thorough
 
 ROOT = Path(__file__).parent.parent
 REFERENCE = ROOT / "fixtures" / "kai_tak_nw.step"
@@ -41,12 +41,12 @@ def snippets(kind: str) -> list[str]:
     ]
 
 
-def commands() -> list[str]:
+def commands(pages: list[Path] = PAGES) -> list[str]:
     """Every command line once: they stand indented, and those with words in capitals show a form and not a run.
 
     What draws the surfaces comes first, as the pages say.
     """
-    lines = [line.strip() for text in TEXTS.values() for line in text.splitlines() if line.startswith("    ")]
+    lines = [line.strip() for page in pages for line in TEXTS[page].splitlines() if line.startswith("    ")]
     found = [line for line in lines if re.match(r"(cadpanel [^A-Z]+$|cadpanel .*fixtures/|python examples/)", line)]
     return sorted(dict.fromkeys(found), key=lambda line: not line.startswith("python examples/shapes.py"))
 
@@ -145,16 +145,19 @@ def test_the_snippets_of_the_pages_run_one_after_the_other(workplace: Path) -> N
     run([sys.executable, "snippets.py"], workplace)
 
 
-def test_the_commands_of_the_pages_run_one_after_the_other(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("pages", cases([PAGES[:1]], [PAGES]), ids=cases(["the README"], ["all"]))
+def test_the_commands_of_the_pages_run_one_after_the_other(
+    pages: list[Path], workplace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """In this process: that the program starts is held by tests of its own, and the kernel takes long to load."""
     monkeypatch.chdir(workplace)
     monkeypatch.setenv("XDG_CACHE_HOME", str(workplace / "cache"))
-    for command in commands():
+    for command in dict.fromkeys([*commands()[:1], *commands(pages)]):  # what draws the surfaces comes first
         words = shlex.split(command)
         if words[0] == "cadpanel":
             assert program.main(words[1:]) == DIFFERS.get(words[1], 0), command
             continue
         monkeypatch.setattr(sys, "argv", words[1:])
         runpy.run_path(str(ROOT / words[1]), run_name="__main__")
-    for name in ("edge", "flare", "roof"):
+    for name in ("edge", "flare", "roof") if pages == PAGES else ():
         assert (workplace / "build" / "pictures" / f"{name}.png").is_file()

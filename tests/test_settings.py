@@ -34,7 +34,7 @@ from cadpanel.terms.limits.catalogue import LIMITS
 from tests.delivered import strip
 
 # What a command has besides settings.
-OF_THE_COMMAND = {"out", "overwrite", "quiet", "time_limit", "tell_steps"}
+OF_THE_COMMAND = {"out", "overwrite", "quiet", "verbose", "time_limit", "tell_steps"}
 # What a record has besides settings: who wrote it, and what a feature is that has no name in the catalogue.
 OF_THE_RECORD = {"cadpanel_version", "composition"}
 # The one setting of the reading that stands among the others; the rest is under reference.reading, where it was given.
@@ -90,7 +90,7 @@ def test_the_comparisons_settings_are_those_that_all_columns_share() -> None:
 
 def test_the_options_are_the_settings() -> None:
     assert options(fit) == FIT | READ | SHEET | SHOP | OF_THE_COMMAND | {"reference"}
-    assert options(compare) == options(fit) - SHEET - SHOP - set(OF_A_COLUMN) - {"time_limit", "tell_steps"}
+    assert options(compare) == options(fit) - SHEET - SHOP - set(OF_A_COLUMN) - {"verbose", "time_limit", "tell_steps"}
     assert options(study) == options(compare) - {"weights"} | {"feature", "max_deviation"}
     assert options(inspect) == {"file", "unit", "faces", "seam_tolerance", "as_json"}
 

@@ -20,7 +20,6 @@ from cadpanel.jobs.engine.cluster import Cluster
 from cadpanel.jobs.engine.engine import Engine
 from cadpanel.jobs.engine.serial import Serial
 from cadpanel.jobs.read import read_job
-from cadpanel.jobs.results import Results, usual_folder
 from cadpanel.jobs.run import Place, run_job
 from cadpanel.jobs.task import task_of
 
@@ -103,6 +102,8 @@ def run(
     source_date()  # refused before anything else is done
     parts = [(region, task_of(region, os.environ.get(VARIABLE))) for region in asked.regions]
     with ExitStack() as opened, region_lines(len(parts), quiet=quiet, told=tell_steps) as shown:
+        from cadpanel.jobs.results import Results, usual_folder  # dear at every start, and for jobs alone
+
         results = opened.enter_context(Results(cache or usual_folder()))
         place = Place(out=target, overwrite=overwrite, fresh=fresh, tell=shown.done)
         summary = run_job(parts, place, _engine(opened, workers, scheduler), results, shown.tell)

@@ -35,6 +35,8 @@ def print_summary(summary: SummaryModel, out: Path, seconds: float) -> None:
     for row in summary.rows:
         if row.said:
             shown.print(Text(f"{row.region}: {row.said}"), soft_wrap=True)
+    if summary.unassembled:
+        shown.print(Text(f"No assembly of all regions: {summary.unassembled}"), soft_wrap=True)
     shown.print(Text(_end(summary.rows, out, seconds)), soft_wrap=True)
 
 

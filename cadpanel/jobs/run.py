@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cadpanel.delivery.folder import delivery_folder, refuse_if_taken
 from cadpanel.delivery.manifest import changed_files
@@ -14,13 +15,16 @@ from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.records.stock import stock_shortfall
 from cadpanel.errors import DeliveryError
 from cadpanel.jobs.archive import unpacked
+from cadpanel.jobs.building import BUILDING, put_together
 from cadpanel.jobs.engine.engine import Engine, TellOf
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.resolved import is_a_job, job_text
-from cadpanel.jobs.results import Results
 from cadpanel.jobs.summary import RowModel, State, SummaryModel, row_of, write_summary
 from cadpanel.jobs.task import Task
 from cadpanel.jobs.work import MET, MISSED, Made
+
+if TYPE_CHECKING:
+    from cadpanel.jobs.results import Results
 
 Part = tuple[Region, Task]
 TellRow = Callable[[RowModel], None]
@@ -75,6 +79,8 @@ def run_job(
             run.came(made, [part for part in missing if part[1].key == made.key])
     finally:
         summary = run.summary()
+        written, said = put_together(place.out, [row.region for row in summary.rows if row.panels is not None])
+        summary = summary.model_copy(update={"assembly": BUILDING if written else None, "unassembled": said})
         write_summary(summary, place.out)
     return summary
 

@@ -60,11 +60,15 @@ class SummaryModel(Record):
     Attributes:
         code: 0 all holds; 1 something asked for is missed; 2 a region was refused; 3 one failed as nobody foresaw.
         rows: a region each.
+        assembly: name of the STEP file in which the panels of all regions hang; None where there is none.
+        unassembled: why there is none, where regions have files for it.
     """
 
     schema_name: Literal["cadpanel.summary/1"] = Field(default="cadpanel.summary/1", alias="schema")
     code: Annotated[int, Field(ge=0, le=3)]
     rows: tuple[RowModel, ...]
+    assembly: str | None = None
+    unassembled: str | None = None
 
 
 def row_of(region: str, report: ReportModel, state: State, said: str | None, tries: int) -> RowModel:

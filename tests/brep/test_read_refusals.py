@@ -137,12 +137,6 @@ def test_reference_to_a_missing_instance_is_refused(tmp_path, strip_file):
     assert "is damaged" in refusal(path)
 
 
-def test_face_that_the_kernel_cannot_build_is_refused(tmp_path, strip_file):
-    path = tmp_path / "face.step"
-    path.write_text(re.sub(r"(B_SPLINE_SURFACE_WITH_KNOTS\('',)\d+", r"\g<1>300", strip_file.read_text(), count=1))
-    assert "a shape that the CAD kernel cannot read" in refusal(path)
-
-
 @pytest.mark.parametrize(
     ("whole", "damaged"),
     [

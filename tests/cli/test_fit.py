@@ -116,7 +116,7 @@ def test_quiet_says_nothing(run: Run, lip_step: Path, tmp_path: Path) -> None:
 
 
 def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: Path) -> None:
-    options = "--gap-tolerance 3 --step 2 --seam-turn 5 --evenness 1 --max-kink 20"
+    options = "--gap-tolerance 3 --step 2 --seam-turn 5 --seam-level 2 --evenness 1 --max-kink 20"
     options += " --drift-along 4 --drift-across 1.5 --min-radius 25 --thickness 5 --joint 2 --ends square"
     options += (
         " --skin-side inner"
@@ -138,6 +138,8 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "max_deviation": None,
         "tilt": "free",
         "method": "concurrent",
+        "energy": None,
+        "tau": 0.001,
         "rules": None,
         "gap_tolerance": 3.0,
         "joint_tolerance": None,
@@ -145,6 +147,7 @@ def test_every_option_arrives_in_the_report(run: Run, lip_step: Path, tmp_path: 
         "shift": None,
         "gaps": {"gap": 3.0, "step": 2.0},
         "seam_turn": 5.0,
+        "seam_level": 2.0,
         "evenness": 0.01,
         "max_kink": 20.0,
         "drift_along": 0.04,

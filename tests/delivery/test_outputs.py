@@ -15,7 +15,17 @@ from cadpanel.delivery import verify as verifying
 from cadpanel.delivery.manifest import MANIFEST
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
-from cadpanel.delivery.own_files import COMPARISON, OWN_FILES, OWN_FOLDERS, REPORT, STUDY, STUDY_PLOTS, STUDY_TABLE
+from cadpanel.delivery.own_files import (
+    COMPARISON,
+    JOB,
+    LOFT_FILES,
+    OWN_FILES,
+    OWN_FOLDERS,
+    REPORT,
+    STUDY,
+    STUDY_PLOTS,
+    STUDY_TABLE,
+)
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError, SettingsError
@@ -38,7 +48,7 @@ def test_outputs_have_names_and_files_of_their_own() -> None:
     files = [file for output in OUTPUTS for file in (*output.files, *output.folders)]
     assert len({output.name for output in OUTPUTS}) == len(OUTPUTS)
     assert len(set(files)) == len(files)
-    others = {REPORT, COMPARISON, MANIFEST, STUDY, STUDY_TABLE, *STUDY_PLOTS}
+    others = {REPORT, COMPARISON, MANIFEST, STUDY, STUDY_TABLE, JOB, *STUDY_PLOTS, *LOFT_FILES}
     assert not others & set(files)
     assert others | set(files) == OWN_FILES | OWN_FOLDERS.keys()
 

@@ -24,7 +24,7 @@ from tests.shapes import folded_panel
 # Millimetres on panels of 2 m.
 RECOVERED = 1e-9
 # The same panels told by the package's numbers and by a user's: both fits stop where the cost no longer falls.
-SAME_FIT = 0.02
+SAME_FIT = 0.05
 LIP = sampled_lip(Lip(panels=3, twist=(2.0, 3.0), radius=(300.0, 260.0)))
 
 # A chain told by a user's numbers, and the same one told by the package's.

@@ -123,7 +123,10 @@ def angle(chamfer, noise):
     return np.column_stack([flat, np.zeros(len(flat))])
 
 
-@pytest.mark.parametrize(("chamfer", "noise"), [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0), (0.7, 0.0), (0.3, 0.005)])
+@pytest.mark.parametrize(
+    ("chamfer", "noise"),
+    cases([(0.0, 0.0), (0.3, 0.005)], [(0.0, 0.0), (0.0, 0.005), (0.3, 0.0), (0.7, 0.0), (0.3, 0.005)]),
+)
 def test_fine_polyline_keeps_its_corner(tmp_path, chamfer, noise):
     edge = polyline_edge(list(angle(chamfer, noise)))
     panels = reference(tmp_path, edge).panels

@@ -57,7 +57,7 @@ STAGGERED = (((0.0, 0.45), (0.0, 1.0, 1.6, 2.0, 3.0)), ((0.45, 1.0), (0.0, 1.0, 
 
 @pytest.mark.parametrize("sweep", cases([30.0], [0.0, 10.0, 30.0]))
 @pytest.mark.parametrize("rows", [(WHOLE,), STAGGERED], ids=["lanes", "staggered"])
-@pytest.mark.parametrize("wander", [0.0, 0.15])
+@pytest.mark.parametrize("wander", cases([0.15], [0.0, 0.15]))
 def test_the_band_is_as_wide_as_asked_square_to_the_lip(sweep, rows, wander):
     angle = math.radians(sweep)
     model = model_of(*faces_of(fold(sweep=angle, wander=wander), *rows))

@@ -20,6 +20,8 @@ from cadpanel.reference.settings import ReferenceSettings
 from tests.rhino_breps import Tube
 from tests.rhino_files import bent_surface, file_in, off_border, rhino, written
 
+pytestmark = pytest.mark.each_value_once
+
 WAYS_ROUND = [(apex, round_v) for apex in (False, True) for round_v in (False, True)]
 AREA = 2e-8  # what the kernel integrates over an arc to
 ON_SURFACE = 1e-3  # the edges, splines through points of the surface, leave it by less, mm

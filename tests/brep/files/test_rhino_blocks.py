@@ -16,6 +16,8 @@ from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.reference.settings import ReferenceSettings
 from tests.rhino_files import bent_surface, file_in, off_border, written
 
+pytestmark = pytest.mark.each_value_once
+
 rhino = pytest.importorskip("rhino3dm")
 TURN = 2.0 * np.pi
 # How closely the kernel integrates over an ellipse, whatever it is asked; points are exact.

@@ -18,6 +18,8 @@ from cadpanel.reference.settings import ReferenceSettings
 from tests.known_faces import RADIUS, disc, spline_plane
 from tests.model_files import write_shape
 
+pytestmark = pytest.mark.each_value_once
+
 AREA = np.pi * RADIUS**2
 LOST = 1e-6  # part of the area
 

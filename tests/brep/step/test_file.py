@@ -28,6 +28,8 @@ from tests.flat_panels import panels as panels_of
 from tests.kernel_step import write_by_kernel
 from tests.shapes import CHAINS, random_panel
 
+pytestmark = pytest.mark.each_value_once
+
 NAMES = ["A-01", "panel with spaces", "Süd, Ost", 'it\'s \\ "quoted"', "面板 7", "🏗 crane", "A/B;C*", "#12=X()"]
 BLUE = (0.25, 0.5, 0.75)
 

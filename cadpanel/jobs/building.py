@@ -1,0 +1,37 @@
+"""building.step: one STEP assembly on top of the deliveries of a job, which stay the files that they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from cadpanel.delivery.assemble import assemble
+from cadpanel.delivery.outputs.step_files import PANELS
+from cadpanel.errors import DeliveryError
+
+BUILDING = "building.step"
+_LEAST = 2
+"""Deliveries from which there is something to put together."""
+
+
+def put_together(out: Path, regions: Sequence[str]) -> tuple[bool, str | None]:
+    """Write the assembly, or remove an earlier one that tells of regions as they were.
+
+    Args:
+        out: the folder of the job.
+        regions: names of those that are delivered; the ones without STEP files are left out.
+
+    Returns:
+        Whether it was written, and in a sentence why not; nothing is said where there are no two files for it.
+    """
+    folders = [out / name for name in regions if (out / name / PANELS).is_file()]
+    said = None
+    if len(folders) >= _LEAST:
+        try:
+            assemble(folders, out / BUILDING)
+        except DeliveryError as error:
+            said = str(error)
+        else:
+            return True, None
+    (out / BUILDING).unlink(missing_ok=True)
+    return False, said

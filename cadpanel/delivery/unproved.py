@@ -44,9 +44,11 @@ BY_A_FIT: tuple[Unproved, ...] = (
     Unproved(what="what the bend was taken from", keys=("panels.*.taken*",)),
 )
 """What only another fit could tell."""
+_BOUNDS = tuple(f"settings.{key}" for key in ("dxf_name_length", "facet_height", "mesh_chord", "stock.*"))
 IN_NO_FILE: tuple[Unproved, ...] = (
     Unproved(what="notes", keys=("panels.*.notes*", "reference.notes*")),
     Unproved(what="what was asked of the fit", keys=(*_OF_THE_FIT, "reference.file", "reference.reading*")),
+    Unproved(what="bounds that files stay below", keys=_BOUNDS),
     Unproved(what="how long it took", keys=("timing*",)),
 )
 """What was so when the delivery was made, and has left nothing else behind."""

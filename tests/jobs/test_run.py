@@ -79,7 +79,14 @@ def test_an_interrupted_run_leaves_what_is_done_and_goes_on(strip: Path, source:
         with pytest.raises(KeyboardInterrupt):
             made(path, out, results, Counting(source, stops_at="C"))
         assert [row.state for row in read_summary(out / "summary.json").rows] == ["made", "made", "waiting"]
-        assert {entry.name for entry in out.iterdir()} == {"A", "B", "building.step", "job.toml", "summary.csv", "summary.json"}
+        assert {entry.name for entry in out.iterdir()} == {
+            "A",
+            "B",
+            "building.step",
+            "job.toml",
+            "summary.csv",
+            "summary.json",
+        }
         engine = Counting(source)
         rest = made(path, out, results, engine)
     assert (engine.worked, [row.state for row in rest.rows]) == (["C"], ["there", "there", "made"])

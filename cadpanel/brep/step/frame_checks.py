@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +22,8 @@ _ACCURACY = re.compile(r"=UNCERTAINTY_MEASURE_WITH_UNIT\(LENGTH_MEASURE\(([^)]*)
 _WHO = re.compile(rf"FILE_NAME\({_STRING},{_STRING},\(({_STRING})\),\(({_STRING})\),")
 _SCHEMA = re.compile(rf"FILE_SCHEMA\(\(({_STRING})\)\)")
 _EDGE, _ALONG = "=EDGE_CURVE(", ",.T.);"
+_PLACE = re.compile(r"=(?:CARTESIAN_POINT|DIRECTION|AXIS2_PLACEMENT_3D)\(")
+_ORIGIN = ("CARTESIAN_POINT('',(0.0,0.0,0.0));", "DIRECTION('',(0.,0.,1.));", "DIRECTION('',(1.,0.,0.));")
 # Of a line that one of these finds something in, and of no other: text of all panels is not held at once.
 _MARKS = (
     "=PRODUCT(",
@@ -62,6 +65,8 @@ def frame_faults(
         yield f"'{path.name}' does not say once that its accuracy is {UNCERTAINTY:g} mm."
     if _WHO.findall(text) != [(string(who[0]), string(who[1]))]:
         yield f"'{path.name}' does not say once that it is from '{who[0]}' of '{who[1]}'."
+    if not _begins_at_origin(path):
+        yield f"'{path.name}' does not begin with the origin that all its parts share."
     if _EDGE in text:
         yield f"'{path.name}' has edges that run against their curves, and cadpanel writes none."
     yield from _product_faults(path.name, _PRODUCT.findall(text), [Part(title, title), *parts])
@@ -71,6 +76,14 @@ def frame_faults(
         yield f"The parts that hang in the assembly of '{path.name}' are not the panels, each once and in their order."
     if len({whole for _, whole, _ in instances}) > 1 or len({part for _, _, part in instances}) < len(instances):
         yield f"A part hangs twice, or in another part, in the assembly of '{path.name}'."
+
+
+def _begins_at_origin(path: Path) -> bool:
+    """Whether the first placement of a file, from which all others are measured, is the origin with its axes."""
+    with path.open(encoding="ascii", errors="replace") as file:
+        found = [line.rstrip("\n").split("=") for line in islice(filter(_PLACE.search, file), 1 + len(_ORIGIN))]
+    own = ",".join(line[0] for line in found[:-1])
+    return [line[-1] for line in found] == [*_ORIGIN, f"AXIS2_PLACEMENT_3D('',{own});"]
 
 
 def _is_turned(line: str) -> bool:

@@ -55,6 +55,7 @@ def test_every_schema_is_told_by_its_name(tmp_path, schema):
         ),
         ("3 mm'", "9 mm'", "that says 'plane, 9 mm', which is not expected"),
         ("(''),(''),", "('Somebody'),(''),", "does not say once that it is from '' of ''"),
+        ("(0.,0.,1.)", "(0.,0.001,1.)", "does not begin with the origin"),
         (",.T.);\n", ",.F.);\n", "has edges that run against their curves"),
     ],
 )

@@ -36,7 +36,7 @@ def fit(
 ) -> None:
     """Fit panels to a reference and deliver them as exact solids, with the proof beside them.
 
-    The smallest deviation is found at which every gap stays within --gap-tolerance. Ctrl-C while all panels are fitted
+    The smallest deviation is found at which every gap and every limit is held. Ctrl-C while all panels are fitted
     at once delivers the best so far, a second one leaves nothing.
 
     Exit codes: 0 all is well; 1 it ran, but the tolerance, the stock or the proof does not hold; 2 refused.

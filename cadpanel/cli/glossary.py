@@ -118,6 +118,7 @@ GLOSSARY: tuple[Term, ...] = (
         name="Hausdorff distance",
         meaning="The largest distance between the trimmed skin and the drawing, in both directions, mm: it counts what "
         "sticks out beyond the drawing, too.",
+        also=("hausdorff",),
     ),
     Term(
         name="drift",
@@ -189,6 +190,39 @@ GLOSSARY: tuple[Term, ...] = (
         "off each.",
     ),
     Term(name="skin", meaning="The face of the sheet that approximates the drawing, without thickness (skins.step)."),
+    Term(
+        name="outline",
+        meaning="A panel's edges all round; the free outline is those without a neighbour, which people see as a line "
+        "(--drift-outline).",
+        also=("free outline", "drift outline"),
+    ),
+    Term(
+        name="lip",
+        meaning="The edge of a roof where the skin turns down in a tight bend; --lip keeps a band about it. 'cadpanel "
+        "inspect' finds lips.",
+    ),
+    Term(
+        name="return",
+        meaning="A strip along an edge of a flat part that is folded inwards (--returns), to stiffen it and to be "
+        "fixed by.",
+        also=("returns", "fold"),
+    ),
+    Term(
+        name="fixing",
+        meaning="A hole along an edge, for a rivet or a screw (--fixings).",
+        also=("fixings", "hole", "fixing hole"),
+    ),
+    Term(
+        name="warp",
+        meaning="Of a surface between two curves: the angle between its tangent planes at both ends of a ruling. Where "
+        "it is nothing, flat sheet takes the shape (cadpanel loft, --max-warp).",
+        also=("max warp",),
+    ),
+    Term(
+        name="region",
+        meaning="A part of a building that is fitted by itself: one entry of a job file, one delivery (cadpanel run).",
+        also=("job", "job file"),
+    ),
     Term(
         name="each alone",
         meaning="A baseline: every panel fitted for itself as near to the drawing as it comes, whatever that leaves "

@@ -46,7 +46,7 @@ Workers = Annotated[
         "--workers",
         metavar="N",
         min=1,
-        help="Work at so many regions at once on this machine; needs 'cadpanel[cluster]'.",
+        help="Work at so many regions at once on this machine; needs the extra 'cluster'.",
         rich_help_panel=RUN,
     ),
 ]

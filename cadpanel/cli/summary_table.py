@@ -17,7 +17,7 @@ def print_summary(summary: SummaryModel, out: Path, seconds: float) -> None:
     """A row a region, what is wrong with some, and where all of it is."""
     table = Table(title="Regions", title_justify="left", title_style="bold")
     table.add_column("region", overflow="fold")
-    for heading in ("panels", "RMS, mm", "most, mm", "gap, mm", "step, mm"):
+    for heading in ("panels", "RMS\ndeviation, mm", "largest\ndeviation, mm", "largest\ngap, mm", "largest\nstep, mm"):
         table.add_column(heading, justify="right")
     for heading in ("held", "state"):
         table.add_column(heading)

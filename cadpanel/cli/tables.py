@@ -47,7 +47,7 @@ _MOST_OF_IT, _MOST_SEAMS = 0.5, 3
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent", "annealing": "annealing"}
 
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str], str], ...] = (
-    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners that should meet"),
+    ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners and bend lines"),
     ("Largest seam gap, mm", lambda s: length(s.max_seam_gap), "along the whole seam"),
     ("  width", lambda s: length(s.max_width), "joint too wide or narrow"),
     ("  step", lambda s: length(s.max_step), "one panel stands out"),
@@ -129,7 +129,7 @@ def print_report(report: ReportModel, folder: Path, took: float, *, verbose: boo
         out.print(Text(line))
     if (folder / PAGE).is_file():
         out.print(Text(f"Look at it: cadpanel view {folder}"), soft_wrap=True)
-    out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)})"), soft_wrap=True)
+    out.print(Text(f"Written: {folder} in {took:.1f} s ({seconds(report.timing)}; the rest to start)"), soft_wrap=True)
 
 
 def _closing_table(report: ReportModel, *, verbose: bool) -> Table:

@@ -1,8 +1,9 @@
 """A chain whose walls stand in given planes: its ends by other cuts, its sides along other rulings.
 
 A flat patch ends on any plane in a straight line, and so does the parallel patch on the sheet's other face: its wall
-may lean as the plane does. A plane that leans meets two parallel cones in no two rulings of theirs, so the side of a
-round patch stays square to the sheet, along the ruling from which it keeps behind the plane on both faces.
+may lean as the plane does. So may the wall at the side of a cylinder, as far as the plane leans about the axis. A plane
+that leans meets two parallel cones in no two rulings of theirs, so the side of a cone stays square to the sheet. Either
+runs along the ruling from which it keeps behind the plane on both faces.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
+from cadpanel.geometry.leaning_sides import may_lean, risen
 from cadpanel.geometry.panel import Chain, CutPlane
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross, unit
@@ -93,20 +95,39 @@ def _along_a_ruling(shape: SomeChain, side: int, plane: CutPlane, depth: float) 
     patch = shape.patches[index]
     assert isinstance(patch, ConePatch)
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
-    share = _share_cut_off(shape, frame, side, plane, depth)
+    level = _level(frame, plane) if may_lean(patch) else None
+    share = _share_cut_off(shape, frame, side, plane, depth, level)
     points, directions, normals = shape.points.copy(), shape.directions.copy(), shape.normals.copy()
     angle = patch.sweep * (share if side == 0 else 1.0 - share)
     turned = _rulings(frame, np.array([angle]))
     points[-side], directions[-side], normals[-side] = turned.points[0], turned.directions[0], turned.normals[0]
     shorter = replace(patch, sweep=patch.sweep * (1.0 - share))
     patches = (*shape.patches[:index], shorter, *shape.patches[index + 1 :])
-    return shape.rewalked(points, directions, normals, patches)
+    moved = shape.rewalked(points, directions, normals, patches)
+    if level is None:
+        return moved
+    leans = shape.side_leans.copy()
+    leans[side] = _leans(turned, level)[0]
+    return moved.trimmed(shape.cut_points, shape.cut_normals, leans)
 
 
-def _share_cut_off(shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, depth: float) -> float:
+def _level(frame: AxisFrame, plane: CutPlane) -> Array:
+    """(3,) normal of the plane along a cylinder's axis that leans as the given one does."""
+    return np.asarray(unit(plane.normal - (plane.normal @ frame.axis) * frame.axis))
+
+
+def _leans(turned: _Ruling, level: Array) -> Array:
+    """(m,) by how much walls square to `level` lean along b for one mm along n, at rulings of a cylinder."""
+    return np.asarray(-(turned.normals @ level) / (cross(turned.directions, turned.normals) @ level))
+
+
+def _share_cut_off(
+    shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, depth: float, level: Array | None
+) -> float:
     """The share of the sweep that goes, so that the last of the four corners comes behind the plane.
 
     Each corner's distance beyond the plane falls smoothly as the side moves inwards: the secant method finds its zero.
+    The wall stands square to the sheet, or square to `level`.
     """
     ends = np.array([0, 1, 0, 1])
     depths = np.array([0.0, 0.0, depth, depth])
@@ -114,6 +135,10 @@ def _share_cut_off(shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, d
     def beyond(shares: Array) -> Array:
         turned = _rulings(frame, frame.sweep * (shares if side == 0 else 1.0 - shares))
         starts = turned.points + depths[:, None] * turned.normals
+        if level is not None:
+            leans = _leans(turned, level)
+            ways = turned.normals + leans[:, None] * cross(turned.directions, turned.normals)
+            starts = turned.points + risen(frame.level_radius, leans, depths)[:, None] * ways
         rates = np.einsum("cx,cx->c", turned.directions, shape.cut_normals[ends])
         heights = np.einsum("cx,cx->c", shape.cut_points[ends] - starts, shape.cut_normals[ends]) / rates
         return plane.beyond(starts + heights[:, None] * turned.directions)

@@ -16,8 +16,9 @@ from cadpanel.geometry.chain_checks import check_chain, check_chain_sheet
 from cadpanel.geometry.chain_cutting import cut_chain
 from cadpanel.geometry.cone_sections import chain_arcs
 from cadpanel.geometry.curve_pieces import CurvePieces, segments
+from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.panel import CutPlane, PanelEdge, Straightened
-from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
+from cadpanel.geometry.patches import Patch, PlanePatch
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
 from cadpanel.geometry.polygon_cutting import cut_polygon
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
@@ -44,7 +45,7 @@ class PanelShape:
         cut_points: (2, 3) a point on the cut plane of end 0 and end 1, mm.
         cut_normals: (2, 3) unit normals of the cut planes, both with a positive component along t.
         side_leans: (2,) by how much the wall at either side leans along b for one mm along n; 0 where it stands square
-            to the sheet, and at the side of a round patch.
+            to the sheet, and at the side of a cone.
         square: whether the walls of its sheet stand square to it; see `squared`.
         lift: where the skin that the cut planes cut lies, mm along n: elsewhere than here only on a face of a square
             sheet that is not the panel's skin. Every corner and every point of an end lies at that skin's own, along n.
@@ -91,14 +92,10 @@ class PanelShape:
         It has the same rulings' directions and the same half angles; only the normal radii change (exactly). A side
         whose wall leans goes with it. Of a square sheet it ends where the normals do on which this one ends.
         """
-        patches = tuple(
-            replace(patch, radius=patch.radius + distance) if isinstance(patch, ConePatch) else patch
-            for patch in self.patches
-        )
-        ways = self.normals.copy()
-        ways[[0, -1]] += self.side_leans[:, None] * self.binormals()[[0, -1]]
+        walk = parallel_walk((self.points, self.normals, self.binormals()), self.patches, self.side_leans, distance)
         lift = self.lift - distance if self.square else 0.0
-        return replace(self, points=self.points + distance * ways, patches=patches, lift=lift)
+        own = self.rewalked(walk.points, self.directions, walk.normals, walk.patches)
+        return replace(own, side_leans=walk.leans, lift=lift)
 
     @property
     def four_sided(self) -> bool:

@@ -7,6 +7,7 @@ plane, parallel to the old one and set back by what the longest place of the oth
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -14,8 +15,10 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.end_leans import leans
+from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.limits import SMALLEST_LENGTH
 from cadpanel.geometry.panel import Chain, Outlined
+from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.vectors import cross, dot, unit
 
 SomeChain = TypeVar("SomeChain", bound=Chain)
@@ -25,16 +28,18 @@ NEARLY_STRAIGHT = 0.05
 
 def square_chain(shape: SomeChain, depth: float) -> SomeChain:
     """A chain whose ends and sides stand square to the sheet, whose other face is at `depth`."""
-    points, cut_points = shape.points.copy(), shape.cut_points.copy()
-    binormals = shape.binormals()
-    for side, outward in ((0, -1.0), (1, 1.0)):
-        beyond = outward * depth * shape.side_leans[side]
-        points[-side] += outward * min(0.0, float(beyond)) * binormals[-side]
-    moved = shape.rewalked(points, shape.directions, shape.normals, shape.patches)
+    cut_points = shape.cut_points.copy()
+    shorter = np.where(np.array([-1.0, 1.0]) * depth * shape.side_leans < 0.0, shape.side_leans, 0.0)
+    far = parallel_walk((shape.points, shape.normals, shape.binormals()), shape.patches, shorter, depth)
+    patches = tuple(
+        replace(patch, sweep=other.sweep) if isinstance(patch, ConePatch) and isinstance(other, ConePatch) else patch
+        for patch, other in zip(shape.patches, far.patches, strict=True)
+    )
+    moved = shape.rewalked(far.points - depth * far.normals, shape.directions, far.normals, patches)
     rulings = moved.points, moved.directions, moved.normals
     for end, outward in ((0, -1.0), (1, 1.0)):
         way_out = outward * shape.cut_normals[end]
-        back = max(0.0, *(depth * lean for lean in leans(rulings, shape.patches, way_out)))
+        back = max(0.0, *(depth * lean for lean in leans(rulings, patches, way_out)))
         cut_points[end] -= back * way_out
     return moved.trimmed(cut_points, shape.cut_normals, np.zeros(2)).made_square()
 

@@ -2,8 +2,9 @@
 
 A sheet is filled by the parallel skins at every distance h from its own skin, all cut by the same two planes, and h is
 measured along their common normal: volume = integral of area(h) dh. Lengths along a generatrix are linear in h (of a
-square sheet they do not change) and the local width too, so the area is a quadratic in h and three Gauss nodes
-integrate it exactly. Across a cone patch the area is an integral over the sweep angle of a smooth function, which
+square sheet they do not change) and the local width too, so the area is a quadratic in h, which three Gauss
+nodes integrate exactly; under a wall that leans at the side of a cylinder it is smooth, and eight take it to rounding
+error. Across a cone patch the area is an integral over the sweep angle of a smooth function, which
 Gauss-Legendre takes to rounding error.
 """
 
@@ -22,7 +23,7 @@ from cadpanel.geometry.vectors import cross
 
 SWEEP_NODES = 48
 _SWEEP_ABSCISSAE, _SWEEP_WEIGHTS = np.polynomial.legendre.leggauss(SWEEP_NODES)
-_SHEET_ABSCISSAE, _SHEET_WEIGHTS = np.polynomial.legendre.leggauss(3)
+_SHEET_ABSCISSAE, _SHEET_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 def patch_areas(shape: Chain) -> list[float]:

@@ -26,10 +26,10 @@ def test_walls_of_flat_sides_and_of_ends_stand_in_their_planes(seed, depth, lean
             assert planes[edge].beyond(face.edge(edge).corners) == pytest.approx(0.0, abs=CLOSE)
 
 
-@pytest.mark.parametrize("half_angle", [-0.05, 0.0, 0.05])
+@pytest.mark.parametrize("half_angle", [-0.05, 0.05])
 @pytest.mark.parametrize("depth", [-20.0, 3.0])
 @pytest.mark.parametrize("side", [0, 1])
-def test_the_side_of_a_round_patch_keeps_behind_its_plane_and_square_to_the_sheet(half_angle, depth, side):
+def test_the_side_of_a_cone_keeps_behind_its_plane_and_square_to_the_sheet(half_angle, depth, side):
     shape = folded_panel(chain="c", half_angle=half_angle, radius=900.0, widths=(), turns=())
     edge = f"side {side}"
     plane = leaning(shape, edge, 10.0, 0.05, 0.01)

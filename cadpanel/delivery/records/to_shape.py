@@ -12,6 +12,7 @@ from cadpanel.delivery.records.blanks import CutModel
 from cadpanel.delivery.records.patches import PatchModel, RulingModel
 from cadpanel.delivery.records.report import PanelModel, ReportModel
 from cadpanel.errors import DeliveryError
+from cadpanel.geometry.leaning_sides import may_lean
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.returns import PATCHES, SIDES, ReturnRule
 from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -53,7 +54,7 @@ def _before_folding(panel: PanelModel, depth: float, *, square: bool = False) ->
     shape = _chain(panel, panel.rulings, panel.cuts)
     if square:
         return shape.made_square()
-    return shape.trimmed(*shape.cuts(), _side_leans(moves, shape.binormals(), shape.patches))
+    return shape.trimmed(*shape.cuts(), _side_leans(moves, shape.binormals(), shape.normals, shape.patches))
 
 
 def recorded_shapes(report: ReportModel) -> list[Built]:
@@ -162,8 +163,8 @@ def unfolded(panel: PanelModel) -> PanelModel:
     return panel.model_copy(update={**rows, **kept, "returns": (), "tray": None})
 
 
-def _side_leans(moves: Array, binormals: Array, patches: Sequence[Patch]) -> Array:
-    """(2,) by how much the walls lean at the first and the last ruling; at a round patch they are square."""
-    flat = [not isinstance(patches[place], ConePatch) for place in (0, -1)]
-    leans = [moves[:, place].mean(axis=0) @ binormals[place] for place in (0, -1)]
-    return np.where(flat, leans, 0.0)
+def _side_leans(moves: Array, binormals: Array, normals: Array, patches: Sequence[Patch]) -> Array:
+    """(2,) by how much the walls lean at the first and the last ruling; at a cone they are square."""
+    ways = [moves[:, place].mean(axis=0) for place in (0, -1)]
+    leans = [way @ b / (way @ n) for way, b, n in zip(ways, binormals[[0, -1]], normals[[0, -1]], strict=True)]
+    return np.where([may_lean(patches[place]) for place in (0, -1)], leans, 0.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import re
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -21,6 +20,7 @@ from cadpanel.brep.files.model import Model
 from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.proof.archive import kept_facts
 from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.finding_back import find_back
@@ -30,8 +30,6 @@ from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
-# Where an object of the kernel lies in memory, which its messages name over lines of their own.
-_POINTER = re.compile(r"0x[0-9a-f]+ : ")
 GoOn = Callable[[], None]
 """Tells whoever asked that the next stage begins."""
 
@@ -130,8 +128,7 @@ def _done(request: Request, stages: _Stages) -> object:
         # Of the kernel, or over arrays that a damaged file fills with nonsense. Python shows the note, a command not.
         stage = stages.now
         what = "the CAD kernel fail" if isinstance(error, Standard_Failure) else f"its {stage.doing} fail"
-        said = _POINTER.sub("", " ".join(str(error).split())) or type(error).__name__
-        refusal = stage.refusal(f"'{stage.file}' makes {what} ({said}): {stage.remedy}.")
+        refusal = stage.refusal(f"'{stage.file}' makes {what} ({said_by(error)}): {stage.remedy}.")
         refusal.add_note(traceback.format_exc())
         raise refusal from error
 

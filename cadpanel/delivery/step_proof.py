@@ -15,7 +15,7 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sh
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
-from cadpanel.brep.step.frame_checks import frame_faults
+from cadpanel.brep.step.frame_checks import Part, frame_faults
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.part_data import skin_data, solid_data
@@ -106,10 +106,11 @@ def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
     """What both files say around their geometry, and are not to say."""
     for file, what, data in ((PANELS, "panels", solid_data(contents)), (SKINS, "skins", skin_data(contents))):
         parts = [
-            (panel.name if said is None else said.number, panel.name)
+            Part(panel.name, panel.name) if said is None else Part(said.number, panel.name, said.description)
             for panel, said in zip(contents.records, data, strict=True)
         ]
-        yield from frame_faults(folder / file, f"{contents.title} {what}", parts, contents.sheet.schema)
+        title, who = f"{contents.title} {what}", (contents.shop.author, contents.shop.organization)
+        yield from frame_faults(folder / file, title, parts, contents.sheet.schema, who)
 
 
 def _expected_flat(part: FlatPart, depth: float, tray: TrayShape | None) -> ExpectedFlat:

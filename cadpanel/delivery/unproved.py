@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+
+from cadpanel.delivery.records.settings import SettingsModel
+from cadpanel.delivery.settings import SheetSettings
+from cadpanel.delivery.shop_settings import ShopSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,22 +22,33 @@ class Unproved:
     keys: tuple[str, ...]
 
 
+_OF_THE_DELIVERY = {one.name for one in (*fields(SheetSettings), *fields(ShopSettings))} | {"step_schema"}
+_OF_THE_FIT = tuple(
+    f"settings.{key}{inside}"
+    for key in SettingsModel.model_fields
+    if key not in _OF_THE_DELIVERY
+    for inside in ("", ".*")
+)
+
 BY_REFERENCE: tuple[Unproved, ...] = (
     Unproved(what="deviation", keys=("panels.*.rms_deviation", "panels.*.max_deviation", "summary.rms_deviation")),
     Unproved(what="Hausdorff distance", keys=("panels.*.hausdorff",)),
-    Unproved(what="drift", keys=("panels.*.*drift*", "summary.drift_*_percent")),
+    Unproved(what="drift", keys=("panels.*.*drift*", "summary.*drift_*percent", "summary.max_off_level")),
     Unproved(what="turn and unevenness of seams", keys=("seams.*.turn", "seams.*.unevenness")),
 )
 """What only the reference can tell."""
 BY_A_FIT: tuple[Unproved, ...] = (
     Unproved(what="what other methods reach", keys=("baselines*",)),
     Unproved(what="what limits cost", keys=("solve*", "seams.*.price")),
+    Unproved(what="how far slender cones were straightened", keys=("panels.*.moved",)),
     Unproved(what="what the bend was taken from", keys=("panels.*.taken*",)),
 )
 """What only another fit could tell."""
+_BOUNDS = tuple(f"settings.{key}" for key in ("dxf_name_length", "facet_height", "mesh_chord", "stock.*"))
 IN_NO_FILE: tuple[Unproved, ...] = (
     Unproved(what="notes", keys=("panels.*.notes*", "reference.notes*")),
-    Unproved(what="what was asked of the fit", keys=("settings.*", "reference.file", "reference.reading*")),
+    Unproved(what="what was asked of the fit", keys=(*_OF_THE_FIT, "reference.file", "reference.reading*")),
+    Unproved(what="bounds that files stay below", keys=_BOUNDS),
     Unproved(what="how long it took", keys=("timing*",)),
 )
 """What was so when the delivery was made, and has left nothing else behind."""

@@ -38,10 +38,12 @@ def _bumped(by: float) -> Callable[[re.Match[str]], str]:
 REAL = r"-?\d+\.\d*(?:E[+-]?\d+)?"
 _POINT = rf"(CARTESIAN_POINT\('',\({REAL},)({REAL})"
 _OF_STEP: dict[str, tuple[str, str | Callable[[re.Match[str]], str]]] = {
-    # The first ones are of frames that place nothing: a corner is meant, and the axis of a surface.
+    # The first ones of a file are those of its origin.
     "a point by 0.01 mm": (rf"(?s)(VERTEX_POINT.*?{_POINT[1:]}", _bumped(0.01)),
     "a point by 2e-6 mm": (rf"(?s)(VERTEX_POINT.*?{_POINT[1:]}", _bumped(2e-6)),
     "a direction turned": (rf"(?s)(CONICAL_SURFACE.*?DIRECTION\('',\({REAL},)({REAL})", _bumped(1e-3)),
+    "the first point": (rf"(CARTESIAN_POINT\('',\({REAL},)({REAL})", _bumped(0.01)),
+    "the first direction": (rf"(DIRECTION\('',\({REAL},)({REAL})", _bumped(1e-3)),
     "a cone's half angle": (rf"(CONICAL_SURFACE\('',#\d+,{REAL},)({REAL})", _bumped(1e-6)),
     "a cone's radius": (rf"(CONICAL_SURFACE\('',#\d+,)({REAL})", _bumped(1e-3)),
     "an ellipse's half axis": (rf"(ELLIPSE\('',#\d+,)({REAL})", _bumped(1e-3)),
@@ -63,7 +65,7 @@ _OF_STEP: dict[str, tuple[str, str | Callable[[re.Match[str]], str]]] = {
     "an instance left out": (r"#\d+=NEXT_ASSEMBLY_USAGE_OCCURRENCE\([^;]*;\n", ""),
     "a product left out": (r"#\d+=PRODUCT\('[^']*/N-01[^;]*;\n", ""),
     "a face left out of its shell": (r"((?:CLOSED|OPEN)_SHELL\('[^']*',\()#\d+,", r"\1"),
-    "a placement moved": (r"(AXIS2_PLACEMENT3D\('',#\d+,#\d+,)(#\d+)", r"\1$"),
+    "a placement moved": (r"(AXIS2_PLACEMENT_3D\('',#\d+),(#\d+),(#\d+)", r"\1,\3,\2"),
     "an author": (r"FILE_NAME\('([^']*)','[^']*',\([^)]*\)", r"FILE_NAME('\1','2001-01-01T00:00:00',('Somebody Else')"),
 }
 _OF_PANELS: dict[str, tuple[str, str | Callable[[re.Match[str]], str]]] = {

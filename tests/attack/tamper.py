@@ -17,6 +17,8 @@ from typing import NamedTuple
 
 from cadpanel.brep.isolation import client
 from cadpanel.delivery.manifest import write_manifest
+from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE
 from cadpanel.delivery.verify import verify
 from tests.attack.file_tampers import FILES
@@ -99,6 +101,8 @@ class Tamperer:
         return frozenset(verify(folder).failures)
 
     def _judged(self, folder: Path, kind: Kind) -> str:
+        if kind.key and read_report(folder / REPORT) == read_report(self._deliveries[kind.of] / REPORT):
+            return "says the same"  # a value was left out that is meant where none is given
         found = verify(folder)
         said = set(found.failures) - (self._said_of_nothing(kind.of) if kind.name in SOLIDS else set())
         if kind.name == NOTHING:

@@ -15,6 +15,7 @@ from OCP.TopoDS import TopoDS_Shape
 from cadpanel.brep.files.format import Format
 from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.units import no_unit, unit_taken
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.kernel.shapes import children, shapes_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
@@ -53,7 +54,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
         shape = scaled(shape, millimetres or 1.0)
     except (Standard_Failure, RuntimeError) as error:
         raise ReferenceFileError(
-            f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and write it again."
+            f"'{path.name}' makes the CAD kernel fail ({said_by(error)}): repair the reference and write it again."
         ) from error
     notes = () if millimetres else (no_unit(path.name, ".brep"),)
     unit = unit_taken(millimetres)

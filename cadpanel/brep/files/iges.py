@@ -16,6 +16,7 @@ from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.units import unit_taken
 from cadpanel.brep.files.xcaf import new_document, parts_of
 from cadpanel.brep.kernel.messages import silence_kernel
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
@@ -76,7 +77,7 @@ def _read(path: Path, millimetres: float | None) -> Model:
         parts = parts_of(document)
     except Standard_Failure as error:
         raise ReferenceFileError(
-            f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and export it again."
+            f"'{path.name}' makes the CAD kernel fail ({said_by(error)}): repair the reference and export it again."
         ) from error
     factor = 1.0 if unit.own or millimetres is None else millimetres
     return Model(

@@ -30,6 +30,7 @@ from cadpanel.brep.files.opennurbs import ConversionError, RhinoObject, curve, s
 from cadpanel.brep.files.opennurbs_pcurves import Course, Line, line_of, straight_line
 from cadpanel.brep.files.opennurbs_trims import SINGULAR, Trim, trims_of
 from cadpanel.brep.kernel import points as kernel
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.kernel.splines import numbers, real_array
 
@@ -83,7 +84,7 @@ def brep_faces(source: RhinoObject, rhino: Any, millimetres: float) -> Faces:
         except ConversionError as error:
             unreadable[index] = str(error)
         except Standard_Failure as error:
-            unreadable[index] = f"it makes the CAD kernel fail, {error}"
+            unreadable[index] = f"it makes the CAD kernel fail, {said_by(error)}"
     shape = faces[0] if len(faces) == 1 else compound_of(faces) if faces else None
     return Faces(shape=shape, unreadable=unreadable)
 

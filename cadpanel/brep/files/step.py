@@ -19,6 +19,7 @@ from cadpanel.brep.files.step_reader import StepFault, read_document
 from cadpanel.brep.files.text_check import START, check_step_text, contents
 from cadpanel.brep.files.units import unit_missing, unit_taken
 from cadpanel.brep.files.xcaf import parts_of
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
@@ -104,7 +105,7 @@ def _parts(path: Path, millimetres: float | None, *, labels: bool) -> _Read:
         raise ReferenceFileError(f"'{path.name}' is damaged{why} again.") from error
     except Standard_Failure as error:
         raise ReferenceFileError(
-            f"'{path.name}' makes the CAD kernel fail ({error}): repair the reference and export it again."
+            f"'{path.name}' makes the CAD kernel fail ({said_by(error)}): repair the reference and export it again."
         ) from error
     unit = step.unit
     factor = 1.0 if unit is not None or millimetres is None else millimetres

@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from cadpanel.brep.isolation.begin import begin
+
 
 def interpreter(module: str) -> list[str]:
     """The command that runs the function `main` of a module of this package.
@@ -13,4 +15,5 @@ def interpreter(module: str) -> list[str]:
     which puts the current folder first: a file `random.py` there would be run.
     """
     paths = [str(Path(path).absolute()) for path in sys.path if path]
-    return [sys.executable, "-P", "-c", f"import sys; sys.path[:] = {paths!r}; from {module} import main; main()"]
+    text = f"import sys; sys.path[:] = {paths!r}; from {begin.__module__} import begin; begin({module!r})"
+    return [sys.executable, "-P", "-c", text]

@@ -1,8 +1,9 @@
-"""How an interpreter ends with the one that asked it, while it works and the kernel gives Python no turn.
+"""How an interpreter ends with the one that asked it, while it loads or works and the kernel gives Python no turn.
 
 Between requests it waits for the next one, and sees the end of its input. While it works, nobody writes to it: whatever
-then happens at its input is that the other end is closed, as the one that asked is gone. Linux tells that by a signal,
-and nothing but the system has to act on it. Elsewhere the time that a request may take ends it.
+then happens at its input is that the other end is closed, as the one that asked is gone. While it loads, the same goes
+for its output. Linux tells that by a signal, and nothing but the system has to act on it. Elsewhere it ends when it has
+loaded, or when the time is over that a request may take.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def ends_with_whoever_asked(handle: int) -> Iterator[None]:
     """End this process as soon as the other end of a pipe is closed, for as long as this lasts.
 
     Args:
-        handle: the pipe's end that is read from; nothing must be written to the other one meanwhile.
+        handle: this process's end of the pipe; nothing must go through it meanwhile.
     """
     if not WATCHES:
         yield
@@ -44,7 +45,7 @@ def ends_with_whoever_asked(handle: int) -> Iterator[None]:
 
 
 def _is_closed(handle: int) -> bool:
-    """Whether nobody holds the other end any more."""
+    """Whether nobody holds the other end any more: one that is read from hangs up, one that is written to fails."""
     poll = select.poll()
     poll.register(handle, select.POLLIN)
-    return any(event & select.POLLHUP for _, event in poll.poll(0))
+    return any(event & (select.POLLHUP | select.POLLERR) for _, event in poll.poll(0))

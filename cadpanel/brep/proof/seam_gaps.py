@@ -71,6 +71,8 @@ def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePiec
         return skin.pieces.take(chosen)
     corners = edge_corners(panel.fitted.corners, edge)
     surfaces = skin.surfaces[skin.piece_faces[chosen, 0]]
+    if len(corners) != len(surfaces) + 1:
+        return None
     cut = panel.fitted.cuts[int(edge[-1])] if edge.startswith("end") else None
     pieces = [
         _piece_on(surface, corners[i], corners[i + 1], cut, bent=bool(skin.pieces.arcs[chosen[i]]))

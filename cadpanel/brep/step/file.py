@@ -19,6 +19,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.files.step_reader import StepDocument, StepFault, read_document
 from cadpanel.brep.files.xcaf import products_of
+from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.step.part_files import PartFile, write_assembly_text
 from cadpanel.brep.step.products import Header, NamedShape, write_step_text
 from cadpanel.brep.step.properties import ATTRIBUTES, PartData, Stated
@@ -160,7 +161,7 @@ def open_step(path: str | os.PathLike[str], *, heal: bool = False, properties: b
         why = f"is damaged ({error.fault})" if error.fault else "is not a complete STEP file"
         raise DeliveryError(f"'{target}' cannot be read: it {why}.") from error
     except Standard_Failure as error:
-        raise DeliveryError(f"'{target}' cannot be read: it makes the CAD kernel fail ({error}).") from error
+        raise DeliveryError(f"'{target}' cannot be read: it makes the CAD kernel fail ({said_by(error)}).") from error
     shapes = products_of(step.document)
     if not shapes:
         raise DeliveryError(f"'{target}' cannot be read: it holds no shapes.")

@@ -8,47 +8,95 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import NamedTuple
 
 from cadpanel.brep.step.schemas import SCHEMAS, UNCERTAINTY, Schema
 from cadpanel.brep.step.text import real, string
 
 _STRING = r"'(?:[^']|'')*'"
-_PRODUCT = re.compile(rf"=PRODUCT\(({_STRING}),({_STRING}),{_STRING},")
+_PRODUCT = re.compile(rf"=PRODUCT\(({_STRING}),({_STRING}),({_STRING}),")
 _INSTANCE = re.compile(rf"=NEXT_ASSEMBLY_USAGE_OCCURRENCE\({_STRING},({_STRING}),{_STRING},#(\d+),#(\d+),")
 _ACCURACY = re.compile(r"=UNCERTAINTY_MEASURE_WITH_UNIT\(LENGTH_MEASURE\(([^)]*)\)")
+_WHO = re.compile(rf"FILE_NAME\({_STRING},{_STRING},\(({_STRING})\),\(({_STRING})\),")
 _SCHEMA = re.compile(rf"FILE_SCHEMA\(\(({_STRING})\)\)")
+_EDGE, _ALONG = "=EDGE_CURVE(", ",.T.);"
+_PLACE = re.compile(r"=(?:CARTESIAN_POINT|DIRECTION|AXIS2_PLACEMENT_3D)\(")
+_ORIGIN = ("CARTESIAN_POINT('',(0.0,0.0,0.0));", "DIRECTION('',(0.,0.,1.));", "DIRECTION('',(1.,0.,0.));")
 # Of a line that one of these finds something in, and of no other: text of all panels is not held at once.
-_MARKS = ("=PRODUCT(", "=NEXT_ASSEMBLY_USAGE_OCCURRENCE(", "=UNCERTAINTY_MEASURE_WITH_UNIT(", "FILE_SCHEMA(")
+_MARKS = (
+    "=PRODUCT(",
+    "=NEXT_ASSEMBLY_USAGE_OCCURRENCE(",
+    "=UNCERTAINTY_MEASURE_WITH_UNIT(",
+    "FILE_SCHEMA(",
+    "FILE_NAME(",
+)
 
 
-def frame_faults(path: Path, title: str, parts: Sequence[tuple[str, str]], schema: Schema) -> Iterator[str]:
+class Part(NamedTuple):
+    """What a product is called: its number, its name, and what is said of it."""
+
+    number: str
+    name: str
+    description: str = ""
+
+
+def frame_faults(
+    path: Path, title: str, parts: Sequence[Part], schema: Schema, who: tuple[str, str] = ("", "")
+) -> Iterator[str]:
     """One sentence for everything around the geometry of a file that is not as it was to be.
 
     Args:
         path: the file, as cadpanel wrote it.
         title: name and number of the assembly.
-        parts: of each part its number and its name, in their order.
+        parts: what each part is called, in their order.
         schema: that was asked for.
+        who: author and organization.
 
     Raises:
         OSError: it cannot be read.
     """
     with path.open(encoding="ascii", errors="replace") as file:
-        text = "".join(line for line in file if any(mark in line for mark in _MARKS))
+        text = "".join(line for line in file if any(mark in line for mark in _MARKS) or _is_turned(line))
     if _SCHEMA.findall(text) != [string(SCHEMAS[schema].name)]:
         yield f"'{path.name}' does not say once that its schema is {schema}."
     if _ACCURACY.findall(text) != [real(UNCERTAINTY)]:
         yield f"'{path.name}' does not say once that its accuracy is {UNCERTAINTY:g} mm."
-    products = _PRODUCT.findall(text)
-    wanted = [(string(title), string(title)), *((string(number), string(name)) for number, name in parts)]
-    for number, name in Counter(wanted) - Counter(products):
-        yield f"'{path.name}' holds no product {name} with the part number {number}."
-    for number, name in Counter(products) - Counter(wanted):
-        yield f"'{path.name}' holds a product {name} with the part number {number}, which is not expected there."
+    if _WHO.findall(text) != [(string(who[0]), string(who[1]))]:
+        yield f"'{path.name}' does not say once that it is from '{who[0]}' of '{who[1]}'."
+    if not _begins_at_origin(path):
+        yield f"'{path.name}' does not begin with the origin that all its parts share."
+    if _EDGE in text:
+        yield f"'{path.name}' has edges that run against their curves, and cadpanel writes none."
+    yield from _product_faults(path.name, _PRODUCT.findall(text), [Part(title, title), *parts])
     instances = _INSTANCE.findall(text)
     names = [name for name, _, _ in instances]
-    if names != [string(name) for _, name in parts]:
+    if names != [string(part.name) for part in parts]:
         yield f"The parts that hang in the assembly of '{path.name}' are not the panels, each once and in their order."
     if len({whole for _, whole, _ in instances}) > 1 or len({part for _, _, part in instances}) < len(instances):
         yield f"A part hangs twice, or in another part, in the assembly of '{path.name}'."
+
+
+def _begins_at_origin(path: Path) -> bool:
+    """Whether the first placement of a file, from which all others are measured, is the origin with its axes."""
+    with path.open(encoding="ascii", errors="replace") as file:
+        found = [line.rstrip("\n").split("=") for line in islice(filter(_PLACE.search, file), 1 + len(_ORIGIN))]
+    own = ",".join(line[0] for line in found[:-1])
+    return [line[-1] for line in found] == [*_ORIGIN, f"AXIS2_PLACEMENT_3D('',{own});"]
+
+
+def _is_turned(line: str) -> bool:
+    """Whether a line is of an edge that does not run along its curve: readers mend that, each in its own way."""
+    return _EDGE in line and not line.endswith(f"{_ALONG}\n")
+
+
+def _product_faults(file: str, products: Sequence[tuple[str, str, str]], parts: Sequence[Part]) -> Iterator[str]:
+    wanted = Counter((string(part.number), string(part.name), string(part.description)) for part in parts)
+    for number, name, description in wanted - Counter(products):
+        yield f"'{file}' holds no product {name} with the part number {number} that says {description}."
+    for number, name, description in Counter(products) - wanted:
+        yield (
+            f"'{file}' holds a product {name} with the part number {number} that says {description}, which is not "
+            "expected there."
+        )

@@ -17,6 +17,7 @@ from cadpanel.arrays import Array
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.drawing.dxf import MARK
 from cadpanel.delivery.drawing.part import bend_lines, roll_lines
+from cadpanel.delivery.drawing.redrawn import drawings_of, holds
 from cadpanel.delivery.records.flat_parts import ALL, FlatPart
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError
@@ -60,11 +61,21 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
         failures += [f"'{path.name}': {fault}." for _, fault in found if fault]
         off = max([off, *(measured for measured, _ in found)])
     strange = sorted({path.name for path in folder.iterdir()} - {whole.name} - _files(contents.parts))
+    if not failures:
+        failures += _redrawn_faults(folder, contents)
     failures += [f"'{name}' stands among the drawings, and no panel of the report is drawn there." for name in strange]
     return Proof(
         numbers={"drawings": len(contents.parts) + 1, "audit_errors": len(errors), "contour_error": off},
         failures=tuple(failures),
     )
+
+
+def _redrawn_faults(folder: Path, contents: Contents) -> Iterator[str]:
+    """What is drawn besides contours and bends, and how, where these are as they should be."""
+    for name, drawing in drawings_of(contents).items():
+        entities = _split(folder / f"{name}{_ENDING}")[1].removeprefix(_VERSION + _ENTITIES).removesuffix(_END)
+        if not holds(entities, drawing, contents.shop.dxf_entities):
+            yield f"'{name}{_ENDING}' does not hold just what the report's numbers and settings draw."
 
 
 def _files(parts: Sequence[FlatPart]) -> set[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cadpanel.delivery.records.report import PanelModel
+from cadpanel.delivery.shop_settings import MeshColours
 
 Colour = tuple[float, float, float]
 FEATURES: tuple[Colour, ...] = (
@@ -20,6 +21,11 @@ FEATURES: tuple[Colour, ...] = (
 """One a feature, sRGB, in the order in which features are met; from the ninth on they begin again."""
 LEAST, MOST = (0.93, 0.91, 0.84), (0.70, 0.15, 0.16)
 """Of a panel that does not deviate, and of the one that does most."""
+
+
+def colours_of(panels: Sequence[PanelModel], tell: MeshColours) -> list[Colour]:
+    """A colour for each panel, as the settings say what colours tell."""
+    return by_deviation(panels) if tell == "deviation" else by_feature(panels)
 
 
 def by_feature(panels: Sequence[PanelModel]) -> list[Colour]:

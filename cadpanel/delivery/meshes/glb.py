@@ -60,11 +60,12 @@ class MeshedPanel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReadMesh:
-    """A mesh that was read back: its name, its points (v, 3) in mm, its triangles (t, 3)."""
+    """A mesh that was read back: its name, its points (v, 3) in mm, its triangles (t, 3), its linear colour."""
 
     name: str
     points: Array
     corners: IntArray
+    paint: tuple[float, ...]
 
 
 def glb_bytes(panels: Sequence[MeshedPanel], title: str, said: Mapping[str, object]) -> bytes:
@@ -156,7 +157,13 @@ def _read(gltf: GLTF2, blob: bytes, node: Node) -> ReadMesh:
     corners = _numbers(gltf, blob, primitive.indices, "<u4").reshape(-1, 3).astype(np.intp)
     if corners.max(initial=-1) >= len(points):
         raise ValueError("a triangle names a corner that is not there")
-    return ReadMesh(name=node.name, points=(points + node.translation) @ _Y_UP / METRES, corners=corners)
+    paint = gltf.materials[primitive.material].pbrMetallicRoughness.baseColorFactor
+    return ReadMesh(
+        name=node.name,
+        points=(points + node.translation) @ _Y_UP / METRES,
+        corners=corners,
+        paint=tuple(float(part) for part in paint[:3]),
+    )
 
 
 def _numbers(gltf: GLTF2, blob: bytes, place: int, kind: str) -> Array:
@@ -167,10 +174,10 @@ def _numbers(gltf: GLTF2, blob: bytes, place: int, kind: str) -> Array:
 
 
 def _material(colour: Colour) -> Material:
-    paint = PbrMetallicRoughness(baseColorFactor=[*_linear(colour), 1.0], metallicFactor=0.1, roughnessFactor=0.6)
+    paint = PbrMetallicRoughness(baseColorFactor=[*linear(colour), 1.0], metallicFactor=0.1, roughnessFactor=0.6)
     return Material(pbrMetallicRoughness=paint)
 
 
-def _linear(colour: Colour) -> list[float]:
+def linear(colour: Colour) -> list[float]:
     """From sRGB (IEC 61966-2-1) to the linear components of glTF."""
     return [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in colour]

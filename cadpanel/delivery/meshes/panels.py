@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from cadpanel.brep.building.meshing import triangles_of
 from cadpanel.delivery.contents import Contents
-from cadpanel.delivery.meshes.colours import by_deviation, by_feature
+from cadpanel.delivery.meshes.colours import colours_of
 from cadpanel.delivery.meshes.glb import MeshedPanel
 from cadpanel.delivery.sheets import PanelSheet
 
@@ -14,7 +14,7 @@ from cadpanel.delivery.sheets import PanelSheet
 def meshed_panels(contents: Contents, sheets: Sequence[PanelSheet]) -> list[MeshedPanel]:
     """One mesh a panel, of its sheet as it was built, within the chord that the settings say."""
     records, shop = contents.records, contents.shop
-    colours = by_deviation(records) if shop.mesh_colours == "deviation" else by_feature(records)
+    colours = colours_of(records, shop.mesh_colours)
     return [
         MeshedPanel(
             name=record.name,

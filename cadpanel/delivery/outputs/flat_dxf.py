@@ -25,25 +25,14 @@ class FlatDxf(Output):
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
         from cadpanel.delivery.drawing.dxf import dxf_bytes, frame_of
-        from cadpanel.delivery.drawing.entities import moved
-        from cadpanel.delivery.drawing.layout import in_rows
-        from cadpanel.delivery.drawing.part import part_drawings
-        from cadpanel.delivery.records.flat_parts import ALL
+        from cadpanel.delivery.drawing.redrawn import drawings_of
 
-        shop, parts = delivery.shop, delivery.parts
-        frame = frame_of(shop)
-        drawings = part_drawings(parts, delivery.records, delivery.seams, delivery.sheet, shop)
-        together = [
-            entity
-            for drawing, shift in zip(drawings, in_rows(drawings), strict=True)
-            for entity in moved(drawing, shift)
-        ]
+        frame, entities = frame_of(delivery.shop), delivery.shop.dxf_entities
         place = folder / FLAT
         try:
             place.mkdir()
-            for part, drawing in zip(parts, drawings, strict=True):
-                (place / f"{part.blank.file}{ENDING}").write_bytes(dxf_bytes(drawing, frame, shop.dxf_entities))
-            (place / f"{ALL}{ENDING}").write_bytes(dxf_bytes(together, frame, shop.dxf_entities))
+            for name, drawing in drawings_of(delivery).items():
+                (place / f"{name}{ENDING}").write_bytes(dxf_bytes(drawing, frame, entities))
         except OSError as error:
             raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error
 

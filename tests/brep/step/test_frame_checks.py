@@ -4,20 +4,22 @@ import pytest
 
 from cadpanel.brep.building.sheet import build_solid
 from cadpanel.brep.step.file import write_step
-from cadpanel.brep.step.frame_checks import frame_faults
+from cadpanel.brep.step.frame_checks import Part, frame_faults
 from cadpanel.brep.step.properties import PartData
 from cadpanel.brep.step.schemas import SCHEMAS
 from tests.shapes import folded_panel
 
 TITLE = "Größe d'or panels"
-PARTS = [("Größe/A", "A"), ("Größe/B'2", "B'2")]
+PARTS = [Part("Größe/A", "A"), Part("Größe/B'2", "B'2", "plane, 3 mm")]
 
 
 @pytest.fixture(scope="module")
 def text(tmp_path_factory):
     path = tmp_path_factory.mktemp("frame") / "panels.step"
-    solids = [(name, build_solid(folded_panel(name=name), 3.0), (0.5, 0.5, 0.5)) for _, name in PARTS]
-    write_step(path, solids, title=TITLE, data=[PartData(number=number) for number, _ in PARTS])
+    solids = [(name, build_solid(folded_panel(name=name), 3.0), (0.5, 0.5, 0.5)) for _, name, _ in PARTS]
+    write_step(
+        path, solids, title=TITLE, data=[PartData(number=part.number, description=part.description) for part in PARTS]
+    )
     return path.read_text(encoding="ascii")
 
 
@@ -36,7 +38,7 @@ def test_every_schema_is_told_by_its_name(tmp_path, schema):
     path = tmp_path / "panels.step"
     write_step(path, [("A", build_solid(folded_panel(name="A"), 3.0), None)], title="T", schema=schema)
     for other in SCHEMAS:
-        assert (list(frame_faults(path, "T", [("A", "A")], other)) == []) is (other == schema)
+        assert (list(frame_faults(path, "T", [Part("A", "A")], other)) == []) is (other == schema)
 
 
 @pytest.mark.parametrize(
@@ -46,7 +48,15 @@ def test_every_schema_is_told_by_its_name(tmp_path, schema):
         ("AP242_MANAGED", "AP214_MANAGED", "does not say once that its schema is AP242"),
         ("'A','A',", "'A','Z',", "holds no product 'A'"),
         (",'A','',#", ",'Z','',#", "are not the panels, each once"),
-        ("=PRODUCT('Gr", "=PRODUCT('','A','',$);#9=PRODUCT('Gr", "with the part number '', which is not expected"),
+        (
+            "=PRODUCT('Gr",
+            "=PRODUCT('','A','',$);#9=PRODUCT('Gr",
+            "with the part number '' that says ''",
+        ),
+        ("3 mm'", "9 mm'", "that says 'plane, 9 mm', which is not expected"),
+        ("(''),(''),", "('Somebody'),(''),", "does not say once that it is from '' of ''"),
+        ("(0.,0.,1.)", "(0.,0.001,1.)", "does not begin with the origin"),
+        (",.T.);\n", ",.F.);\n", "has edges that run against their curves"),
     ],
 )
 def test_what_was_changed_is_told(tmp_path, text, old, new, says):
@@ -65,5 +75,5 @@ def test_a_part_that_hangs_twice_or_elsewhere_is_told(tmp_path, text):
 
 def test_a_panel_that_is_missing_and_one_too_many_are_told(tmp_path, text):
     assert "which is not expected there" in "".join(faults(tmp_path, text, PARTS[:1]))
-    assert "holds no product 'C'" in "".join(faults(tmp_path, text, [*PARTS, ("Größe/C", "C")]))
+    assert "holds no product 'C'" in "".join(faults(tmp_path, text, [*PARTS, Part("Größe/C", "C")]))
     assert "schema is AP214" in "".join(faults(tmp_path, text, schema="AP214"))

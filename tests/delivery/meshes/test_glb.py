@@ -93,6 +93,8 @@ def test_what_is_not_the_reports_is_told(delivery: tuple[Path, ReportModel], tmp
         failures = verify(out).failures
         (out / GLB).write_bytes(glb_bytes(panels[:2], "t", {}))
         missing = verify(out).failures
+        (out / GLB).write_bytes(glb_bytes(panels, "t", {}))
+        painted = verify(out).failures
         for damage in (b"", b"glTF", data[:700], data[:-4000]):
             (out / GLB).write_bytes(damage)
             with pytest.raises(DeliveryError, match=r"panels\.glb' cannot be read: it is no whole glTF file"):
@@ -103,6 +105,7 @@ def test_what_is_not_the_reports_is_told(delivery: tuple[Path, ReportModel], tmp
     assert "'panels.glb': the mesh of panel 'N 2' is not closed." in failures
     assert any("'N 3' encloses" in failure for failure in failures)
     assert missing[1:] == ("'panels.glb' does not hold the panels of the report, each once and in their order.",)
+    assert painted[1:] == (f"'{GLB}': its colours do not tell what the report says that they tell, deviation.",)
     with pytest.raises(DeliveryError, match="cannot be read: No such file"):
         read_glb(tmp_path / "none.glb")
 

@@ -1,0 +1,22 @@
+"""The first thing that a second interpreter does: it loads its work, and ends if nobody waits for it any more."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
+
+
+def begin(module: str) -> None:
+    """Load a module and run its function `main`.
+
+    Loading the kernel takes seconds in which Python has no turn, and the first request may come meanwhile. So it is
+    the standard output that is watched: nothing is said there until all is loaded.
+
+    Args:
+        module: its name; it must say nothing while it is loaded.
+    """
+    with ends_with_whoever_asked(sys.stdout.fileno()):
+        main = import_module(module).main
+    main()

@@ -144,6 +144,7 @@ def _fewest(
 ) -> tuple[ReportModel, str | None]:
     """The same with the fewest panels along each strip that hold everything."""
     from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.blanks_fit import blanks_fit
     from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import MOST, fewest_panels
 
@@ -169,7 +170,10 @@ def _fewest(
             return not interrupted.heard()
 
         prepare = partial(with_earlier, folder_of=asked.folder_of)
-        found = fewest_panels(read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare)
+        fit_stock = partial(blanks_fit, sheet=asked.sheet, shop=asked.shop)
+        found = fewest_panels(
+            read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare, admitted=fit_stock
+        )
     return _delivered(asked, found.result, folder, shown, seconds_to_read, found.shortfall())
 
 

@@ -98,14 +98,15 @@ def panel_edges(panel: RawPanel, tolerance: float) -> list[Edge]:
 
 
 def free_edges(
-    edges: Sequence[Edge], tolerance: float, knives_of: RawPanel | None = None
+    edges: Sequence[Edge], panel: RawPanel, tolerance: float, *, knives: bool = False
 ) -> tuple[list[Edge], list[Contact]]:
     """Separate the edges that no other face shares, from end to end, from those that one does.
 
     Args:
-        edges: all edges of one panel, in any order and direction.
+        edges: all edges of the panel, in any order and direction.
+        panel: as sampled.
         tolerance: how far shared edges may lie apart, mm.
-        knives_of: the panel, where edges along which its faces fold back are free; None where they are shared.
+        knives: whether edges along which faces fold back are free, or shared.
 
     Returns:
         The free edges, and one contact for each pair of edges that coincide.
@@ -120,8 +121,8 @@ def free_edges(
     candidates = np.argwhere(np.triu((direct | reverse) & (faces[:, None] != faces[None, :]), 1)).tolist()
     contacts, shared = [], set()
     for first, second in candidates:
-        contact = _coincide(edges[first], edges[second], tolerance)
-        if contact is not None and not (knives_of and _folds_back(edges[first], edges[second], knives_of)):
+        contact = _coincide(edges[first], edges[second], panel, tolerance)
+        if contact is not None and not (knives and _folds_back(edges[first], edges[second], panel)):
             contacts.append(contact)
             shared |= {first, second}
     return [edge for index, edge in enumerate(edges) if index not in shared], contacts
@@ -146,7 +147,7 @@ def _near(first: Array, second: Array, tolerance: float) -> BoolArray:
     return near
 
 
-def _coincide(first: Edge, second: Edge, tolerance: float) -> Contact | None:
+def _coincide(first: Edge, second: Edge, panel: RawPanel, tolerance: float) -> Contact | None:
     """The contact along two edges, None where they do not coincide."""
     points, normals, other_points, other_normals = first.points, first.normals, second.points, second.normals
     if len(points) != len(other_points):
@@ -156,7 +157,14 @@ def _coincide(first: Edge, second: Edge, tolerance: float) -> Contact | None:
     for order in (slice(None), slice(None, None, -1)):
         apart = float(norm(points - other_points[order]).max())
         if apart <= tolerance:
-            agree = bool(np.sum(normals * other_normals[order]) > 0.0)
+            together = float(np.mean(np.sum(normals * other_normals[order], axis=-1)))
+            agree = together > 0.0
+            if abs(together) < -np.cos(np.radians(KNIFE_EDGE)):
+                # At a sharp crease normals of one side of a sheet may lean away from each other, but its faces lie on
+                # the two sides of their edge.
+                lefts = [_into(edge, panel)[1] for edge in (first, second)]
+                runs_against = order.step is not None
+                agree = (lefts[0] == lefts[1]) == runs_against
             # Points may lie beside each other along the edges only.
             gap = apart if apart <= SEEN else _gap(first, second)
             return Contact(
@@ -167,18 +175,21 @@ def _coincide(first: Edge, second: Edge, tolerance: float) -> Contact | None:
 
 def _folds_back(first: Edge, second: Edge, panel: RawPanel) -> bool:
     """Whether the surface turns back where it goes over two edges that coincide."""
-    ways = [_into(edge, panel.faces[edge.face].points) for edge in (first, second)]
+    ways = [_into(edge, panel)[0] for edge in (first, second)]
     return bool(ways[0] @ ways[1] > np.cos(np.radians(180.0 - KNIFE_EDGE)))
 
 
-def _into(edge: Edge, samples: Array) -> Array:
-    """(3,) the way from the middle of an edge into its face, square to the edge."""
-    middle = len(edge.points) // 2
-    along = edge.points[middle + 1] - edge.points[middle - 1]
-    way = unit(cross(edge.normals[middle], along))
-    offsets = samples - edge.points[middle]
-    nearest = offsets[norm(offsets).argmin()]
-    return np.asarray(way if way @ nearest >= 0.0 else -way)
+def _into(edge: Edge, panel: RawPanel) -> tuple[Array, bool]:
+    """Where an edge has its face: the way (3,) into it, square to the edge, and whether that is left with normals up.
+
+    Told in the edge's point to which a sample of the face is nearest: across from there lies the face, however narrow.
+    """
+    inner = edge.points[1:-1]
+    offsets = panel.faces[edge.face].points - inner[:, None]
+    place, sample = np.unravel_index(norm(offsets).argmin(), offsets.shape[:2])
+    left = unit(cross(edge.normals[place + 1], edge.points[place + 2] - edge.points[place]))
+    on_left = bool(left @ offsets[place, sample] >= 0.0)
+    return np.asarray(left if on_left else -left), on_left
 
 
 def _gap(first: Edge, second: Edge) -> float:

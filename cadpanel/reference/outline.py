@@ -179,7 +179,7 @@ def _walk_within(panel: RawPanel, tolerance: float) -> _Walk:
 
 def _walk_along(edges: Sequence[Edge], panel: RawPanel, tolerance: float, *, knives: bool = False) -> _Walk:
     """Walk round a panel; edges along which it folds back are joined, or are free as knife edges."""
-    free, contacts = free_edges(edges, tolerance, panel if knives else None)
+    free, contacts = free_edges(edges, panel, tolerance, knives=knives)
     loops, loose = _chain(free, contacts, tolerance)
     return _Walk(
         tolerance=tolerance,
@@ -288,6 +288,10 @@ def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, toleranc
     """Cut a closed loop of edges into its sides."""
     turns = _turns(loop)
     corners = np.flatnonzero(turns > CORNER_ANGLE).tolist()
+    if len(corners) > FOUR:
+        # An end that crosses a crease aslant turns there in the sheet, too, and is one cut all the same.
+        off_creases = [corner for corner in corners if not _at_crease(loop, corner)]
+        corners = off_creases if len(off_creases) == FOUR else corners
     if len(corners) != FOUR or _is_flat(loop):
         corners = np.flatnonzero(turns > OBTUSE_CORNER).tolist()
     if len(corners) < FEWEST_CORNERS:
@@ -303,6 +307,13 @@ def _cut_at_corners(loop: Sequence[Edge], panel: RawPanel, source: str, toleranc
     turned = [*loop[corners[0] :], *loop[: corners[0]]]
     cuts = [corner - corners[0] for corner in corners] + [len(loop)]
     return _sides([turned[start:stop] for start, stop in pairwise(cuts)])
+
+
+def _at_crease(loop: Sequence[Edge], start: int) -> bool:
+    """Whether the loop goes from one face to another at the start of an edge, and the normals turn as at a corner."""
+    before, after = loop[start - 1], loop[start]
+    sharp = before.normals[-1] @ after.normals[0] < np.cos(np.radians(CORNER_ANGLE))
+    return bool(before.face != after.face and sharp)
 
 
 def _is_flat(loop: Sequence[Edge]) -> bool:

@@ -33,10 +33,13 @@ def check_corners(panel: PanelReference, source: str, feature: str) -> None:
     if panel.four_sided:
         return
     places = ", ".join("({:.1f}, {:.1f}, {:.1f})".format(*corner) for corner in panel.corners[:6])
+    # A flat sheet may have more corners; what would give a bent one four is not known here.
+    mean = panel.normals.sum(axis=0)
+    flat = (panel.normals @ mean).min() >= np.cos(np.radians(GENTLE)) * np.linalg.norm(mean)
     raise PanelError(
         panel.name,
-        f"in '{source}', its outline has {len(panel.corners)} corners (at {places}) where a {feature} panel has 4: "
-        "trim it to two ends and two sides, or make it a planar-polygon.",
+        f"in '{source}', its outline has {len(panel.corners)} corners (at {places}) where a {feature} panel has 4"
+        + (": make it a planar-polygon." if flat else ", and it is bent too much for a planar-polygon."),
     )
 
 

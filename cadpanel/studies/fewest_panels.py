@@ -24,6 +24,7 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.model import Reference
 from cadpanel.studies.prepared import Prepare, unprepared
 
+TOO_LARGE = "a blank fits no sheet"
 MOST = 200
 """Panels along a strip at most, where nothing else is said."""
 # The number that is tried first, fits of every panel alone at most, and of all panels at once.
@@ -34,6 +35,12 @@ FASTEST, SLOWEST = 1.6, 1.25
 Progress = Callable[[int, int, float, float], bool | None]
 """Told the number of panels, the step (0 where a fit begins), the largest excess over a tolerance and the RMS deviation
 in mm; where it returns False, the search ends with the best so far."""
+Admitted = Callable[[FitResult], bool]
+"""Whether panels that hold everything will do besides, as their blanks fit the sheets of the store."""
+
+
+def _any(_result: FitResult) -> bool:
+    return True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,7 +65,7 @@ class Tried:
         """As a list of what was tried names it."""
         if self.max_deviation is None or self.gap is None:
             return f"{self.count} (no fit)"
-        word = "held" if self.held else "not held"
+        word = "held" if self.held else TOO_LARGE if self.missed == TOO_LARGE else "not held"
         return f"{self.count} ({word}: {self.max_deviation:.3g} mm off at most, gaps up to {self.gap:.3g} mm)"
 
 
@@ -110,6 +117,7 @@ def fewest_panels(
     progress: Progress | None = None,
     time_limit: float | None = None,
     prepare: Prepare = unprepared,
+    admitted: Admitted = _any,
 ) -> Fewest:
     """Find the fewest panels along each strip that hold everything that is asked.
 
@@ -120,8 +128,10 @@ def fewest_panels(
         progress: told of every step.
         time_limit: seconds after which the search ends with the best so far.
         prepare: see `Prepare`.
+        admitted: what else is asked of a result that holds everything; its panels are taken to be too large if not.
 
     Raises:
+        PanelError: what is asked besides cannot be told of panels that hold everything.
         ReferenceFileError: the reference cannot be cut along strips at all.
         PanelError: no number of panels could be fitted.
         SettingsError: no largest deviation is given, or weights instead of a tolerance.
@@ -130,7 +140,7 @@ def fewest_panels(
         raise SettingsError("the number of panels is chosen by a largest deviation: give one, too")
     if settings.weights is not None:
         raise SettingsError("the number of panels is chosen by what is held, and weights hold nothing: leave them out")
-    search = _Search(read, settings, most, progress, time_limit, prepare)
+    search = _Search(read, settings, most, progress, time_limit, prepare, admitted)
     least = search.least_alone()
     search.run(least)
     if search.best is None:
@@ -161,8 +171,10 @@ class _Search:
         progress: Progress | None,
         time_limit: float | None,
         prepare: Prepare,
+        admitted: Admitted,
     ) -> None:
-        self._prepare = prepare
+        self._prepare, self._admitted = prepare, admitted
+        self._rank: tuple[bool, float] | None = None
         self.tried: dict[int, Tried] = {}
         self.best: FitResult | None = None
         self.most = most
@@ -236,16 +248,18 @@ class _Search:
             )
             return False
         measures = result.measures
+        held = result.tolerance_met and self._admitted(result)
         self.tried[count] = Tried(
             count=count,
-            held=result.tolerance_met,
+            held=held,
             max_deviation=float(measures.max_deviation.max()),
             gap=max(measures.max_corner_gap, measures.max_seam_gap),
-            missed=result.shortfall() or "",
+            missed=result.shortfall() or ("" if held else TOO_LARGE),
         )
-        if self.best is None or _misses(result) < _misses(self.best):
-            self.best = result
-        return result.tolerance_met
+        rank = _misses(result, held=held)
+        if self._rank is None or rank < self._rank:
+            self.best, self._rank = result, rank
+        return held
 
     def _together(self, reference: Reference, count: int) -> FitResult | None:
         def tell(_method: str, step: int, excess: float, rms: float) -> bool:
@@ -275,10 +289,12 @@ class _Search:
         return self._references[count]
 
 
-def _misses(result: FitResult) -> tuple[bool, float]:
+def _misses(result: FitResult, *, held: bool) -> tuple[bool, float]:
     """By what a result is ranked: one that holds by its number of panels, another by the most that it exceeds."""
-    if result.tolerance_met:
+    if held:
         return False, float(len(result.shapes))
+    if result.tolerance_met:  # only too large for the store's sheets: the smaller, the better
+        return True, 1.0 / len(result.shapes)
     measures, how = result.measures, result.settings
     shares = [float(limit.excess(measures, allowed).max()) for limit, allowed in limits_of(how)]
     gaps = measures.gaps

@@ -18,6 +18,7 @@ from tests.reference_shapes import (
     moved,
     raw_panel,
     sampled_face,
+    shuffled,
     write_plain,
     write_products,
 )
@@ -87,3 +88,35 @@ def test_a_ready_made_panel_says_what_gap_inside_it_is_bridged(tmp_path):
         assert read_reference(path, ReferenceSettings(seam_tolerance=4.0, faces=chosen)).notes == (said,)
     with pytest.raises(PanelError, match=r"the nearest other one is 2\.4 mm away"):
         read_reference(path)
+
+
+def leading_edge(half_angle: float, sweep: float, taper: float, bulge: float) -> RawPanel:
+    """Two faces that meet in a crease, which leans from the square of the panel's flat ends, angles in degrees."""
+
+    def surface(u, v):
+        off, y = np.abs(u - 1.0) * (1.0 - taper * v), 1500.0 * v
+        across, back = 150.0 * np.sin(np.radians(half_angle)), 150.0 * np.cos(np.radians(half_angle))
+        x = np.sign(u - 1.0) * (across * off + bulge * off * (1.0 - np.abs(u - 1.0)))
+        return np.stack([x, y, -back * off - np.tan(np.radians(sweep)) * y], axis=-1)
+
+    return RawPanel(name="nose", faces=(sampled_face(surface, (0.0, 1.0)), sampled_face(surface, (1.0, 2.0))))
+
+
+@given(
+    half_angle=st.floats(24.0, 55.0),
+    sweep=st.floats(-45.0, 45.0),
+    taper=st.floats(0.0, 0.4),
+    bulge=st.floats(0.0, 10.0),
+    seed=st.integers(0, 999),
+)
+@settings(max_examples=25, deadline=None)
+def test_a_swept_leading_edge_has_four_corners_and_one_outer_face_however_sharp(half_angle, sweep, taper, bulge, seed):
+    plain = leading_edge(half_angle, sweep, taper, bulge)
+    mirror = np.diag([1.0, -1.0 if seed % 2 else 1.0, 1.0])
+    panel = shuffled(moved(plain, mirror, np.zeros(3)), np.random.default_rng(seed))
+    found = assemble([panel], "wing.step").panels[0]
+    assert found.four_sided
+    tips = np.array([plain.faces[face].edges[side][[0, -1]] for face, side in ((0, 3), (1, 1))]) @ mirror
+    away = np.linalg.norm(found.corners.reshape(4, 1, 3) - tips.reshape(1, 4, 3), axis=-1)
+    np.testing.assert_allclose(away.min(axis=0), 0.0, atol=1e-6)
+    assert (found.normals[:, 2] > 0.0).all()

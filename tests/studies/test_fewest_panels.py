@@ -12,7 +12,7 @@ from cadpanel.errors import PanelError, ReferenceFileError, SettingsError
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.reference.settings import ReferenceSettings
 from cadpanel.studies import fewest_panels as module
-from cadpanel.studies.fewest_panels import MOST_FITS, fewest_panels
+from cadpanel.studies.fewest_panels import MOST_FITS, TOO_LARGE, fewest_panels
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.delivered import fitted
@@ -89,6 +89,17 @@ def test_where_no_number_holds_the_best_is_told_with_its_numbers(monkeypatch):
         "no number of panels along each strip from 10 to 60 was found to hold everything (tried: 10,"
     )
     assert f"with {len(found.result.shapes)}, the best of them, the largest deviation of 10 mm is not met" in sentence
+
+
+def test_what_is_asked_besides_makes_panels_smaller_until_it_will_do(monkeypatch):
+    made_up = MadeUp(lambda n: 90.0 / n**2, lambda n: 90.0 / n**2)
+    found = search(monkeypatch, made_up, admitted=lambda result: len(result.shapes) >= 11)
+    assert found.least == 3
+    assert len(found.result.shapes) == 11
+    assert {one.count: one.held for one in found.tried}[11]
+    assert all(one.missed == TOO_LARGE and TOO_LARGE in str(one) for one in found.tried if not one.held)
+    never = search(monkeypatch, made_up, most=20, admitted=lambda _: False)
+    assert len(never.result.shapes) == 20
 
 
 def test_gaps_that_do_not_close_ask_for_more_panels_too(monkeypatch):

@@ -12,6 +12,9 @@ SHORTER = 0.8
 """Share of a length that is tried instead."""
 ROUND = 3
 """Panels round a closed surface or a point that have corners enough each."""
+TRIED = 1.5
+FEW = 36
+"""Another grid is tried after a first one while the panels of both are within so many times those asked for, or few."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,11 @@ def _of_size(how: ReferenceSettings) -> Sequence[OtherWay]:
 def _of_grid(how: ReferenceSettings) -> Sequence[OtherWay]:
     assert how.grid is not None
     u, v = how.grid
-    return _grid(how, max(u, ROUND - 1) + 1, max(v, ROUND - 1) + 1), _grid(how, max(u, ROUND), 2 * v)
+    finer, doubled = (max(u, ROUND - 1) + 1, max(v, ROUND - 1) + 1), (max(u, ROUND), 2 * v)
+    # Reading takes as long as there are panels: no second try where a grid is large.
+    panels = finer[0] * finer[1] + doubled[0] * doubled[1]
+    tried = (finer, doubled) if panels <= max(FEW, TRIED * u * v) else (finer,)
+    return [_grid(how, *numbers) for numbers in tried]
 
 
 def _of_stations(how: ReferenceSettings) -> Sequence[OtherWay]:

@@ -17,7 +17,7 @@ from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.fitting.start.frames import Frames, Given, reframe
-from cadpanel.fitting.start.segmentation import ambiguous, cut_profile
+from cadpanel.fitting.start.segmentation import ambiguous, cut_profile, without_blemishes
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
 from cadpanel.reference.strip import end_planes
@@ -164,10 +164,12 @@ def _cut_ends(
     n = _unit(_off(normals.sum(axis=(1, 2)), axis))
     b = cross(axis, n)
     turned = np.arctan2(np.einsum("peqx,px->peq", normals, b), np.einsum("peqx,px->peq", normals, n))
-    turned = np.unwrap(turned, axis=2)
+    turned = np.unwrap(turned, axis=2).reshape(2 * count, places)
+    if sum(feature.curved) == 1:
+        turned = without_blemishes(turned)
     lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
     held = stretches / lengths[..., None] * (places - 1)
-    profile = cut_profile(turned.reshape(2 * count, places), feature.curved, even=even, held=held.reshape(-1, 2))
+    profile = cut_profile(turned, feature.curved, even=even, held=held.reshape(-1, 2))
     knots = profile.knots.reshape(count, 2, -1)
     sweeps = np.diff(profile.angles.reshape(count, 2, -1).mean(axis=1), axis=1)
     sweeps = np.where(np.abs(sweeps) < _LEAST_SWEEP, np.where(sweeps < 0.0, -1.0, 1.0) * _LEAST_SWEEP, sweeps)

@@ -12,12 +12,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from cadpanel.arrays import Array, IntArray
 
 # No patch is shorter than so many steps, unless there are too many patches for that.
 SHORTEST = 2
-
+# What turns away from the places around it, the middle one of so many, by more than this angle (radians) and back again
+# is a blemish of the drawn surface: no fold turns to and fro.
+_AROUND = 17
+_BLEMISH = np.radians(30.0)
 
 # Walks that are cut at a time.
 _CHUNK = 16
@@ -54,6 +58,21 @@ def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, he
     if held is not None and not np.all(np.isnan(held)):
         _hold(knots, curved, held)
     return Profile(knots, _angles(turned, knots, curved))
+
+
+def without_blemishes(turned: Array) -> Array:
+    """Walks (n, q) without narrow hooks, as faces have them beside a crease that their modeller did not fair.
+
+    Where the angle lies far off the median of the places around, that is put in its place. A walk that turns one way
+    only is its own median, so that folds stay as they are, however sharp.
+
+    Args:
+        turned: angles by which the normals have turned, radians, of features that turn one way.
+    """
+    half = _AROUND // 2
+    around = sliding_window_view(np.pad(turned, ((0, 0), (half, half)), mode="edge"), _AROUND, axis=1)
+    median = np.median(around, axis=2)
+    return np.where(np.abs(turned - median) > _BLEMISH, median, turned)
 
 
 def _best_knots(turned: Array, curved: Sequence[bool]) -> IntArray:

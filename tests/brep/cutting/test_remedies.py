@@ -108,3 +108,11 @@ def test_at_most_two_other_ways_are_tried_and_neither_is_the_one_asked_for(how):
 @pytest.mark.parametrize("how", [{}, {"network": "lines.step"}, {"mesh": "mesh.obj"}])
 def test_nobody_draws_other_curves(how):
     assert other_ways(ReferenceSettings(unit="mm", **how)) == ()
+
+
+def test_a_large_grid_is_not_refused_at_the_price_of_several():
+    asked = ReferenceSettings(unit="mm", grid=(8, 8))
+    tried = [other.settings.grid for other in other_ways(asked) if other.settings.grid]
+    assert tried
+    assert sum(u * v for u, v in tried) <= 1.5 * 64
+    assert len(other_ways(ReferenceSettings(unit="mm", grid=(1, 2)))) == 2

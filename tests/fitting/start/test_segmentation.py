@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.fitting.start.segmentation import SHORTEST, curved_runs, cut_profile
+from cadpanel.fitting.start.segmentation import SHORTEST, curved_runs, cut_profile, without_blemishes
 
 few = settings(max_examples=15)
 seeds = st.integers(0, 10_000)
@@ -161,3 +161,13 @@ def test_patches_may_be_shorter_where_there_are_more_of_them_than_room(patches, 
 )
 def test_runs_are_stretches_of_curved_patches(curved, runs):
     assert curved_runs(curved) == runs
+
+
+@few
+@given(steps=st.lists(st.floats(0.0, 2.0), min_size=64, max_size=64), hook=st.integers(1, 7), start=st.integers(30, 50))
+def test_a_narrow_hook_is_taken_out_of_a_walk_and_a_sharp_fold_is_not(steps, hook, start):
+    walk = np.cumsum(np.array([0.0, *steps]) * np.array([30.0 if k == 20 else 0.01 for k in range(65)]))[None]
+    np.testing.assert_array_equal(without_blemishes(np.radians(walk)), np.radians(walk))
+    hooked = walk.copy()
+    hooked[:, start : start + hook] += 100.0
+    assert np.abs(without_blemishes(np.radians(hooked)) - np.radians(walk)).max() < np.radians(1.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from cadpanel.delivery.assemble import assemble
 from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.errors import DeliveryError
 
@@ -24,6 +23,8 @@ def put_together(out: Path, regions: Sequence[str]) -> tuple[bool, str | None]:
     Returns:
         Whether it was written, and in a sentence why not; nothing is said where there are no two files for it.
     """
+    from cadpanel.delivery.assemble import assemble  # it loads the kernel, for which a refused job should not wait
+
     folders = [out / name for name in regions if (out / name / PANELS).is_file()]
     said = None
     if len(folders) >= _LEAST:

@@ -157,7 +157,7 @@ def test_what_cannot_be_compared_is_refused(folders: dict[str, Path], report: Re
     with pytest.raises(SettingsError, match="tolerance must be a length above 0"):
         diff(folders["whole"], folders["whole"], tolerance=0.0)
     old = report.model_copy(update={"panels": tuple(p.model_copy(update={"blank": None}) for p in report.panels)})
-    with pytest.raises(DeliveryError, match="without its blank"):
+    with pytest.raises(DeliveryError, match="without its rulings, cuts, blank"):
         diff(written(old, tmp_path / "old"), folders["whole"])
 
 

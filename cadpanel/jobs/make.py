@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from cadpanel.reference.model import Reference
 
 _READ, _FIRST, _CONCURRENT = "Read reference", "Fit each alone", "Fit all at once"
+_AT_ONCE = 1e-3
+"""Seconds after which a fit ends whose time is up before it begins."""
 
 
 class Told(Protocol):
@@ -108,6 +111,55 @@ def make_delivery(
     return make(asked, folder, shown, time_limit, ending)
 
 
+class _Fitting:
+    """Fits of one file that is cut in one way or another, which share what time there is.
+
+    Attributes:
+        seconds_to_read: that reading has taken.
+    """
+
+    def __init__(
+        self,
+        asked: Asked,
+        shown: Told,
+        time_limit: float | None,
+        ending: Callable[[], AbstractContextManager[Ending]],
+    ) -> None:
+        self.seconds_to_read = 0.0
+        self._asked, self._shown, self._ending = asked, shown, ending
+        self._limit, self._until, self._heard = time_limit, math.inf, False
+
+    def fit(self, how: ReferenceSettings) -> FitResult:
+        """Read and fit; the time of all fits begins with the first one."""
+        from cadpanel.brep.read import read_reference
+        from cadpanel.delivery.earlier import with_earlier
+        from cadpanel.fitting.run import fit
+
+        began = time.perf_counter()
+        reference = read_reference(self._asked.file, how)
+        self.seconds_to_read += time.perf_counter() - began
+        # Refused before the fit.
+        chosen_panels([panel.name for panel in reference.panels], self._asked.shop.only)
+        settings = with_earlier(self._asked.settings, reference, self._asked.folder_of)
+        self._shown.begin(_FIRST)
+        if self._limit is not None and self._until == math.inf:
+            self._until = time.perf_counter() + self._limit
+        with self._ending() as interrupted:
+
+            def tell(_method: str, count: int, excess: float, rms: float) -> bool:
+                self._shown.solving(_CONCURRENT, count, excess, rms)
+                return not interrupted.heard()
+
+            left = None if self._limit is None else max(self._until - time.perf_counter(), _AT_ONCE)
+            result = fit(reference, settings, tell, time_limit=left)
+            self._heard |= interrupted.heard()
+        return result
+
+    def over(self) -> bool:
+        """Whether somebody wants it to end, or the time is up."""
+        return self._heard or time.perf_counter() > self._until
+
+
 def _once(
     asked: Asked,
     folder: Path,
@@ -115,24 +167,13 @@ def _once(
     time_limit: float | None,
     ending: Callable[[], AbstractContextManager[Ending]],
 ) -> tuple[ReportModel, str | None]:
-    from cadpanel.brep.read import read_reference
-    from cadpanel.delivery.earlier import with_earlier
-    from cadpanel.fitting.run import fit
+    from cadpanel.delivery.blanks_fit import blanks_fit
+    from cadpanel.jobs.stocked import fitted_to_stock
 
-    began = time.perf_counter()
-    reference = read_reference(asked.file, asked.how)
-    seconds_to_read = time.perf_counter() - began
-    chosen_panels([panel.name for panel in reference.panels], asked.shop.only)  # refused before the fit
-    settings = with_earlier(asked.settings, reference, asked.folder_of)
-    shown.begin(_FIRST)
-    with ending() as interrupted:
-
-        def tell(_method: str, count: int, excess: float, rms: float) -> bool:
-            shown.solving(_CONCURRENT, count, excess, rms)
-            return not interrupted.heard()
-
-        result = fit(reference, settings, tell, time_limit=time_limit)
-    return _delivered(asked, result, folder, shown, seconds_to_read, result.shortfall())
+    fitting = _Fitting(asked, shown, time_limit, ending)
+    fits = partial(blanks_fit, sheet=asked.sheet, shop=asked.shop)
+    result = fitted_to_stock(asked.how, fitting.fit, fits, fitting.over)
+    return _delivered(asked, result, folder, shown, fitting.seconds_to_read, result.shortfall())
 
 
 def _fewest(

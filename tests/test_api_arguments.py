@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,15 @@ STRANGE: tuple[Any, ...] = (object(), 1j, b"x", [object()], {"a": object()}, {1,
 """Values of no argument."""
 NO_NUMBERS: tuple[Any, ...] = (float("nan"), float("inf"), -1e9, "x", [1.0, 2.0], np.zeros((2, 2)))
 POINTS = np.random.default_rng(1).normal(size=(30, 3))
+RAIL = np.column_stack([np.linspace(0.0, 2000.0, 9), np.zeros(9), np.zeros(9)])
+
+
+@cache
+def spanned() -> cp.Loft:
+    """A flat one."""
+    return cp.loft(RAIL, RAIL + np.array([0.0, 0.0, 500.0]))
+
+
 CALLS: dict[str, Callable[[], dict[str, Any]]] = {
     "read": lambda: {"path": "none.step"},
     "inspect": lambda: {"path": "none.step"},
@@ -41,6 +51,10 @@ CALLS: dict[str, Callable[[], dict[str, Any]]] = {
     "fit_plane": lambda: {"points": POINTS},
     "fit_cylinder": lambda: {"points": POINTS},
     "fit_cone": lambda: {"points": POINTS},
+    "assemble": lambda: {"deliveries": ["none"], "file": "none.step"},
+    "rails": lambda: {"path": "none.step"},
+    "loft": lambda: {"a": RAIL, "b": RAIL + np.array([0.0, 0.0, 500.0])},
+    "deliver_loft": lambda: {"loft": spanned(), "out": "none"},
     "build_skin": lambda: {"shape": fitted().shapes[0]},
     "build_solid": lambda: {"shape": fitted().shapes[0], "thickness": 3.0},
 }
@@ -65,6 +79,8 @@ WORK = (
     "cadpanel.studies.trade_off.trade_off",
     "cadpanel.studies.fewest_panels.fewest_panels",
     "cadpanel.delivery.deliver.fill_delivery",
+    "cadpanel.delivery.loft_files.write_loft_files",
+    "cadpanel.lofting.loft.best_pairing",
     "cadpanel.delivery.sheets.build_panels",
 )
 

@@ -15,9 +15,11 @@ from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.source_date import source_date
 from cadpanel.errors import DeliveryError
+from cadpanel.kinds import checked
 
 
-def assemble(deliveries: Sequence[str | os.PathLike[str]], file: str | os.PathLike[str]) -> None:
+@checked
+def assemble(deliveries: Sequence[str | Path], file: str | Path) -> None:
     """Write a STEP assembly in which the panels of several deliveries hang, each delivery where it lies in the model.
 
     It names their files and holds none of their shapes, so that it is small however many panels there are, and a region

@@ -12,6 +12,7 @@ from scipy.interpolate import BSpline
 from cadpanel.arrays import Array
 from cadpanel.errors import LoftError
 from cadpanel.geometry.vectors import cross, norm
+from cadpanel.kinds import checked
 from cadpanel.lofting.checks import check_rails, cut_at_corners, same_way, size_of
 from cadpanel.lofting.distance import Distance, check_distance
 from cadpanel.lofting.flat import FlatError, FlatPiece, unrolled
@@ -132,6 +133,7 @@ class Loft:
             yield a.point, b.point
 
 
+@checked
 def loft(
     a: Rail | BSpline | Array, b: Rail | BSpline | Array, *, distance: Distance = "warp", name: str = "loft"
 ) -> Loft:

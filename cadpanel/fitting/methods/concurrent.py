@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,6 +41,8 @@ from cadpanel.terms.term import HeldTerm
 # nearly one creep on for dozens of steps; what these still gain, the steps that hold tolerances gain as well.
 _FIRST_GAP, _FIRST_DRIFT = 0.1, 1e-2
 _FIRST = Stopping(cost=1e-2, iterations=40, least=3)
+# Where that is all but enough, as far as so little excess tells, corners are gathered once more and more closely.
+_CLOSELY, _ALL_BUT = Stopping(cost=1e-3, iterations=40), 1.2
 # How often seams are tightened where they part still further, and up to which excess that is worth trying.
 _TIGHTENINGS = 8
 _NEARLY = 20.0
@@ -71,7 +73,7 @@ class Concurrent(Method):
         if self.goes_on:
             return _hold_seams(problem, starts[1], starts, settings, progress, gathered=True)
         return best_of_starts(
-            lambda start: _hold_seams(problem, start, starts, settings, progress),
+            lambda start: _held_from(problem, start, starts, settings, progress),
             lambda unknowns: _score(problem, unknowns, settings),
             starts[0],
             settings,
@@ -82,6 +84,19 @@ class Concurrent(Method):
         return Weighted()
 
 
+def _held_from(
+    problem: Problem, start: Array, starts: Sequence[Array], settings: FitSettings, progress: Progress | None
+) -> Fitted:
+    """Hold every seam from a start, gathered more closely where that misses what must hold by a little."""
+    found = _hold_seams(problem, start, starts, settings, progress)
+    if found.stopped in (Stop.HELD, Stop.TOLD) or not 1.0 < _excess(problem, found.unknowns, settings) <= _ALL_BUT:
+        return found
+    again = _hold_seams(problem, start, starts, settings, progress, gathering=_CLOSELY)
+    steps = found.iterations + again.iterations
+    better = _score(problem, again.unknowns, settings) < _score(problem, found.unknowns, settings)
+    return replace(again if better else found, iterations=steps)
+
+
 def _hold_seams(
     problem: Problem,
     start: Array,
@@ -90,10 +105,12 @@ def _hold_seams(
     progress: Progress | None,
     *,
     gathered: bool = False,
+    gathering: Stopping = _FIRST,
 ) -> Fitted:
     """Hold every seam from a start, whose corners lie together already or are gathered first."""
     limits = problem.named_limits(settings, MARGIN)
-    begin, iterations = (start, 0) if gathered else gather(problem, settings, [term for _, term in limits], start)
+    terms = [term for _, term in limits]
+    begin, iterations = (start, 0) if gathered else gather(problem, settings, terms, start, gathering)
     named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in seams_held(problem, settings, begin)), *limits]
     model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
     everywhere = np.ones(model.pattern.components, dtype=bool)
@@ -198,8 +215,13 @@ def gather(
 
 def _score(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
     """RMS deviation, and a large penalty for gaps and limits that do not hold."""
+    excess = _excess(problem, unknowns, settings)
+    rms = problem.rms(problem.deviation.cost(problem.state(unknowns)))
+    return rms * (1.0 if excess <= 1.0 else 1e3 * excess)
+
+
+def _excess(problem: Problem, unknowns: Array, settings: FitSettings) -> float:
+    """The largest ratio of a gap or a limit to what is allowed."""
     state = problem.state(unknowns)
     held: list[HeldTerm] = [*gap_terms(problem, problem.gaps(settings), state), *problem.limits(settings)]
-    excess = max(term.hold.excess(term.vectors(state)) for term in held)
-    rms = problem.rms(problem.deviation.cost(state))
-    return rms * (1.0 if excess <= 1.0 else 1e3 * excess)
+    return max(term.hold.excess(term.vectors(state)) for term in held)

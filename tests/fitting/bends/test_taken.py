@@ -46,8 +46,8 @@ def test_a_blend_reads_as_it_is_written(first, width, percent, panel):
         ("-5-300", "is a stretch across"),
         (("300-400", "310-410"), "two blends are for all panels"),
         (("A=300-400", "A=310-410"), "two blends are for 'A'"),
-        (7.0, "a blend is text"),
-        ((7.0,), "a blend is text"),
+        (7.0, "must be a word or Blend"),
+        ((7.0,), "must be a word or Blend"),
     ],
 )
 def test_what_is_no_blend_is_refused(given_, sentence):

@@ -112,6 +112,7 @@ def test_what_is_no_value_of_an_argument_is_refused_in_one_sentence(
     name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    CALLS[name]()  # what is fitted or spanned for it is, before nothing works any more
 
     def stop(*_: object, **__: object) -> None:
         raise Accepted

@@ -10,7 +10,7 @@ from rich.text import Text
 from cadpanel.brep.proof.returned_solids import SolidBack
 from cadpanel.cli.tables import console, counted
 
-HEADINGS = ("panel", "called there", "off, mm", "volume", "area")
+NAMES, DIFFERENCES = ("panel", "called there"), ("off, mm", "volume", "area")
 EXACT = 1e-6
 """mm, and parts of a volume or an area, below which nothing differs that anybody could measure."""
 
@@ -26,8 +26,10 @@ def print_solids_back(solids: Sequence[SolidBack], heading: str) -> None:
     if not telling:
         return
     table = Table()
-    for heading, justify in zip(HEADINGS, ("left", "left", "right", "right", "right"), strict=True):
-        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    for name in NAMES:
+        table.add_column(name)
+    for difference in DIFFERENCES:
+        table.add_column(difference, justify="right")
     for one in telling:
         table.add_row(Text(one.name), Text(one.called), *(f"{size:.2g}" for size in _sizes(one)))
     console().print(table)

@@ -16,8 +16,9 @@ from cadpanel.features.feature import Feature
 from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.walk import walk
 from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.cone_strips import bends_in_cones, cone_strips
 from cadpanel.fitting.start.frames import Frames, Given, reframe
-from cadpanel.fitting.start.segmentation import ambiguous, cut_profile, without_blemishes
+from cadpanel.fitting.start.segmentation import ambiguous, curved_runs, cut_profile, without_blemishes
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
 from cadpanel.reference.strip import end_planes
@@ -63,7 +64,9 @@ class _Ends:
 
 
 def start_chains(feature: Feature, given: Given) -> Frames:
-    """Frames and all numbers of chains, cut in another way, too, where their curved patches follow each other.
+    """Frames and all numbers of chains; where their curved patches follow each other, in two ways.
+
+    The other way are cones along a developable strip, see `cone_strips`, or where there is none, even parts.
 
     Raises:
         PanelError: a panel has no fold, or not the four corners, that its feature asks for.
@@ -77,6 +80,8 @@ def start_chains(feature: Feature, given: Given) -> Frames:
         origins, axes, values = _roll(
             _cut_ends(panels, feature, axis, given.stretches, even=way > 0), panels, feature, length
         )
+        if way > 0 and bends_in_cones(feature):
+            _lay_cones(feature, given, axis, (origins, axes, values))
         if found is None:
             found = Frames(origins, axes, [])
         else:
@@ -111,6 +116,18 @@ def _roll(ends: _Ends, panels: Sequence[PanelReference], feature: Feature, lengt
             dimensions = np.stack([width / length, -np.arctan(widening)], axis=1)
         values[:, feature.patch_slice(i)] = _numbers_for(feature, i, dimensions, panels)
     return origins, axes, values
+
+
+def _lay_cones(feature: Feature, given: Given, axis: Array, rolled: tuple[Array, Array, Array]) -> None:
+    """Put cones along a strip in the place of what was rolled between the ends, where a panel has such cones."""
+    origins, axes, values = rolled
+    (run,) = curved_runs(feature.curved)
+    for i, cones in enumerate(cone_strips(feature, given, axis)):
+        if cones is None:
+            continue
+        origins[i], axes[i] = cones.origin, cones.axes
+        for patch, own in zip(range(*run), cones.dimensions / np.array([given.length, 1.0, 1.0]), strict=True):
+            values[i, feature.patch_slice(patch)] = _numbers_for(feature, patch, own[None], given.panels[i : i + 1])[0]
 
 
 def _numbers_for(feature: Feature, patch: int, dimensions: Array, panels: Sequence[PanelReference]) -> Array:

@@ -251,6 +251,10 @@ THROUGH_A_DOOR = {
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",
     "cadpanel.jobs.make": "tests/cli/test_fit.py",
     "cadpanel.terms.limits.chains": "tests/terms/test_limits.py",
+    "cadpanel.studies.baselines.cone_strip": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.fitted": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.lofted": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.tangent_planes": "tests/studies/baselines/test_catalogue.py",
 }
 
 

@@ -39,6 +39,9 @@ _REGION = 0.5
 _GAUSS = 0.5 / np.sqrt(3.0) * np.array([-1.0, 1.0])
 # Places at which the foot of a point is looked for first, and Newton's steps from there.
 _PLACES, _STEPS = 65, 6
+# Rulings follow each other where they do so on both sides of the middle, at these parts of the length, and are apart by
+# this share of what they are in the mean.
+_BESIDE, _LEAST_GROWTH = (-0.25, 0.25), 0.02
 # Places of the grid on which areas are told.
 _CELLS = 33
 # More of the area than this among the first or last of the turning, a share of it, is a flat part.
@@ -239,14 +242,23 @@ def _solved(sampled: Sampled, turning: tuple[float, float], spans: int) -> Plane
         right.append(root * (d + q * at + (own - s) * x))
     found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(right), rcond=None)[0].reshape(2, -1)
     spline = BSpline(knots, np.stack([found[0] / size, found[1]], axis=-1), _DEGREE)
-    return PlaneCurve(sampled.origin, sampled.axes, spline, turning, _bend(spline, s, y))
+    return PlaneCurve(sampled.origin, sampled.axes, spline, turning, _bend(spline, s, y, size))
 
 
-def _bend(spline: BSpline, s: Array, y: Array) -> int:
-    """Which way a strip bends, if at every sample x rises along the strip: see `PlaneCurve`."""
-    q2, d2 = spline(s, nu=2).T
-    growth = -(q2 * y + d2)
-    return 1 if (growth > 0.0).all() else -1 if (growth < 0.0).all() else 0
+def _bend(spline: BSpline, s: Array, y: Array, length: float) -> int:
+    """Which way a strip bends, if x rises along the strip by its share at least: see `PlaneCurve`.
+
+    At every sample, and between them on both sides of the middle of the strip.
+    """
+    grid = np.linspace(spline.t[0], spline.t[-1], _PLACES)
+    stations, heights = (
+        np.concatenate([s, grid, grid]),
+        np.concatenate([y, *(share * length + 0.0 * grid for share in _BESIDE)]),
+    )
+    q2, d2 = spline(stations, nu=2).T
+    growth = -(q2 * heights + d2)
+    least = _LEAST_GROWTH * abs(float(growth[len(s) :].mean()))
+    return 1 if growth.min() > least else -1 if growth.max() < -least else 0
 
 
 def _knots(s: Array, weights: Array, ends: tuple[float, float], spans: int) -> Array:

@@ -15,7 +15,7 @@ from cadpanel.errors import PanelError
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.walk import walk
-from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.axes import turning_axes
 from cadpanel.fitting.start.cone_strips import bends_in_cones, cone_strips
 from cadpanel.fitting.start.frames import Frames, Given, reframe
 from cadpanel.fitting.start.segmentation import ambiguous, curved_runs, cut_profile, without_blemishes
@@ -32,8 +32,6 @@ _PLACES = 65
 _LEAST_FOLD = np.radians(2.0)
 # Half angles of the start stay below this, radians; the ends' widths tell them only roughly.
 _STEEPEST = 0.3
-# The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
-_ASTRAY = np.cos(np.radians(40.0))
 
 
 def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
@@ -73,7 +71,7 @@ def start_chains(feature: Feature, given: Given) -> Frames:
     """
     panels, length = given.panels, given.length
     _check(panels, given.source, feature)
-    axis = _axes(panels, given.samples)
+    axis = turning_axes(panels, given.samples)
     whole = np.array([panel.corners for panel in panels])
     found: Frames | None = None
     for way in range(given.ways if ambiguous(feature.curved) else 1):
@@ -155,22 +153,6 @@ def _held(feature: Feature, values: Array) -> Array:
     """The values with fixed and tied numbers in their places, and the others within their bounds."""
     unknowns = np.clip(values[:, feature.free], *feature.bounds())
     return feature.expand(unknowns)
-
-
-def _axes(panels: Sequence[PanelReference], samples: SampleArrays) -> Array:
-    """(n, 3) the direction about which the normals turn: that in which they spread least.
-
-    On a cone and on the planes tangent to it all normals enclose one angle with the axis, so that it is exact there.
-    """
-    corners = np.array([panel.corners for panel in panels])
-    chord = _unit((corners[:, 1] - corners[:, 0]).mean(axis=1))
-    weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
-    off = samples.normals - np.einsum("pm,pmx->px", weights, samples.normals)[:, None]
-    _, directions = np.linalg.eigh(np.einsum("pm,pmx,pmy->pxy", weights, off, off))
-    least = directions[:, :, 0]
-    least = least * np.where(dot(least, chord) < 0.0, -1.0, 1.0)[:, None]
-    astray = dot(least, chord) < _ASTRAY
-    return np.where(astray[:, None], chord, least)
 
 
 def _cut_ends(

@@ -9,13 +9,18 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.errors import LoftError
+from cadpanel.errors import LoftError, PanelError
 from cadpanel.features.feature import Feature
+from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.axes import turning_axes
 from cadpanel.fitting.start.frames import Given
 from cadpanel.fitting.start.segmentation import curved_runs
 from cadpanel.lofting.cone_strip import Cones, cones_through
-from cadpanel.lofting.tangent_planes import Sampled, plane_curve
-from cadpanel.reference.model import PanelReference
+from cadpanel.lofting.tangent_planes import PlaneCurve, Sampled, plane_curve
+from cadpanel.reference.model import PanelReference, Reference
+
+# What the whole outline counts, as a part of the panel's area.
+_OUTLINE = 0.01
 
 
 def bends_in_cones(feature: Feature) -> bool:
@@ -37,17 +42,49 @@ def cone_strips(feature: Feature, given: Given, axis: Array) -> list[Cones | Non
     asked = np.flatnonzero(~np.isnan(given.stretches).any(axis=(1, 2))).tolist()
     found: list[Cones | None] = []
     for i, panel in enumerate(given.panels):
-        own = given.samples.weights[i] > 0.0
-        samples = (given.samples.points[i, own], given.samples.normals[i, own], given.samples.weights[i, own])
         try:
-            found.append(None if i in asked else _cones(feature, panel, Sampled.of(*samples, axis[i])))
+            found.append(None if i in asked else cones_of(feature, panel, _sampled(panel, axis[i])))
         except LoftError:
             found.append(None)  # Not every panel is a strip; it begins from what was rolled between its ends.
     return found
 
 
-def _cones(feature: Feature, panel: PanelReference, sampled: Sampled) -> Cones:
-    """From flange to flange, or from side to side of a panel without.
+def strips_of(reference: Reference) -> list[tuple[Sampled, PlaneCurve]]:
+    """The developable strip through the tangent planes of every panel, with the samples that it is led through.
+
+    Raises:
+        PanelError: a panel is no strip that turns one way.
+    """
+    samples = SampleArrays.of(reference)
+    found = []
+    for panel, axis in zip(reference.panels, turning_axes(reference.panels, samples), strict=True):
+        try:
+            sampled = _sampled(panel, axis)
+            curve = plane_curve(sampled)
+        except LoftError as error:
+            raise PanelError(panel.name, str(error)) from error
+        if not curve.bend:
+            raise PanelError(
+                panel.name, "its normals turn to and fro, or rulings through its tangent planes meet in it"
+            )
+        found.append((sampled, curve))
+    return found
+
+
+def _sampled(panel: PanelReference, axis: Array) -> Sampled:
+    """A panel's samples and, with little weight, its outline, as its first and its last plane are at its sides."""
+    outline = np.concatenate(panel.edges)
+    beside = np.full(len(outline), _OUTLINE * panel.weights.sum() / len(outline))
+    return Sampled.of(
+        np.concatenate([panel.points, outline]),
+        np.concatenate([panel.normals, *panel.edge_normals]),
+        np.concatenate([panel.weights, beside]),
+        axis,
+    )
+
+
+def cones_of(feature: Feature, panel: PanelReference, sampled: Sampled) -> Cones:
+    """A panel's cones from flange to flange, or from side to side where the feature has no flanges.
 
     Raises:
         LoftError: the panel is no strip that turns one way, or has flat sides while the feature has no flanges.

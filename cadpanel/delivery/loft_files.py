@@ -9,10 +9,11 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.loft_skin import build_loft
+from cadpanel.brep.proof.archive import kept_areas
 from cadpanel.brep.proof.loft_facts import loft_facts
 from cadpanel.brep.step.file import write_step
 from cadpanel.brep.step.products import Header
-from cadpanel.delivery.document.loft import FLAT_FILE, SURFACE_FILE, loft_areas, loft_bytes
+from cadpanel.delivery.document.loft import FLAT_FILE, SURFACE_FILE, loft_bytes
 from cadpanel.delivery.drawing.dxf import dxf_bytes, frame_of
 from cadpanel.delivery.drawing.entities import Contour, Entity, Line
 from cadpanel.delivery.own_files import LOFT, LOFT_DOCUMENT, LOFT_DXF, LOFT_PNG, LOFT_STEP
@@ -30,8 +31,6 @@ COLOUR = (0.55, 0.65, 0.75)
 # By how much the kernel's area may differ from ours, as a share; and for each radian of warp, whose integrand has sharp
 # bends where the normal turns over.
 _SAME_AREA, _SAME_WARPED = 1e-6, 1e-4
-# In the document areas are integrated without refinement where the normal turns over.
-_SAME_KEPT = 1e-3
 _NO_PICTURE = "There is no picture, as matplotlib is not installed: pip install 'cadpanel[plot]'."
 
 
@@ -70,7 +69,7 @@ def write_loft_files(
     if not how.dxf_contour_only:
         drawing += [Line(how.layer("ROLL"), *line) for line in rulings]
     _write(folder / LOFT_DXF, dxf_bytes(drawing, frame_of(how), how.dxf_entities))
-    _write(folder / LOFT_DOCUMENT, loft_bytes(loft, contour, rulings))
+    _write(folder / LOFT_DOCUMENT, loft_bytes(loft, folder / LOFT_STEP, contour, rulings))
     proof = _proved(loft, folder, contour, how)
     told = () if can_plot() else (_NO_PICTURE,)
     record = loft_record(
@@ -125,7 +124,7 @@ def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> Loft
     # A chord's width all along, and what warp takes from the surface.
     allowed = abs(error.area) + how.chord * float(np.linalg.norm(contour[:, :2] - np.roll(contour[:, :2], 1, axis=0)))
     allowed += how.chord * sum(rail.length for rail in loft.rails)
-    kept = loft_areas(folder / LOFT_DOCUMENT)
+    kept = kept_areas(folder / LOFT_DOCUMENT)
     faults = [
         fault
         for wrong, fault in (
@@ -136,7 +135,7 @@ def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> Loft
                 f"'{LOFT_STEP}': its faces have {facts.area:.6g} mm2, expected {error.surface:.6g}.",
             ),
             (
-                abs(kept[SURFACE_FILE] - facts.area) > (_SAME_AREA + _SAME_KEPT * loft.max_warp) * facts.area,
+                abs(kept[SURFACE_FILE] - facts.area) > (_SAME_AREA + _SAME_WARPED * loft.max_warp) * facts.area,
                 f"'{LOFT_DOCUMENT}': its surface has {kept[SURFACE_FILE]:.6g} mm2, expected {facts.area:.6g}.",
             ),
             (

@@ -9,9 +9,9 @@ import pytest
 
 import cadpanel as cp
 from cadpanel.brep.building.loft_skin import build_loft
+from cadpanel.brep.proof.archive import kept_areas
 from cadpanel.brep.proof.loft_facts import loft_facts
 from cadpanel.delivery import loft_files
-from cadpanel.delivery.document.loft import loft_areas
 from cadpanel.delivery.pictures.loft import draw_loft
 from cadpanel.delivery.records.loft import read_loft
 from cadpanel.errors import ProofError
@@ -42,7 +42,7 @@ def test_a_loft_is_written_and_read_back(run, file, tmp_path):
     facts = loft_facts(tmp_path / "loft" / "loft.step")
     assert (facts.valid, facts.faces) == (True, record.proof.faces)
     assert facts.area == pytest.approx(record.flat.area, rel=1e-6)
-    kept = loft_areas(tmp_path / "loft" / "loft.FCStd")
+    kept = kept_areas(tmp_path / "loft" / "loft.FCStd")
     assert kept["Surface.brp"] == pytest.approx(record.flat.area, rel=1e-6)
     assert kept["FlatPattern.brp"] == pytest.approx(record.proof.drawn_area, rel=1e-6)
     drawing = ezdxf.filemanagement.readfile(tmp_path / "loft" / "loft.dxf")

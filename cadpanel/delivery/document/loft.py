@@ -9,9 +9,8 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.drawn import flat_face
-from cadpanel.brep.building.loft_skin import build_loft
 from cadpanel.brep.kernel.shapes import brep_text
-from cadpanel.brep.proof.archive import kept_facts
+from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.document.archive import camera, packed
 from cadpanel.delivery.document.colors import FLAT, SKIN
 from cadpanel.delivery.document.objects import AnyProperty, Body, Lines, Look, Number, NumberKind
@@ -23,17 +22,21 @@ SURFACE_FILE, FLAT_FILE = "Surface.brp", "FlatPattern.brp"
 _SEEN = 9
 
 
-def loft_bytes(loft: Loft, contour: Array, rulings: Array) -> bytes:
+def loft_bytes(loft: Loft, step: Path, contour: Array, rulings: Array) -> bytes:
     """The whole file.
 
     Args:
         loft: the surface.
+        step: its STEP file, whose reader puts in the edges that shrink to a point at fans, without which FreeCAD finds
+            the shape to be broken.
         contour: (v, 3) its flat pattern as a closed chain of arcs, starts and bulges, mm.
         rulings: (m, 2, 2) lines on it along which to roll, mm.
 
     Raises:
+        DeliveryError: the STEP file is missing, or damaged.
         SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
     """
+    _, surface = read_step_shapes(step, heal=True)[0]
     objects = (
         Body(
             name="Surface",
@@ -52,19 +55,10 @@ def loft_bytes(loft: Loft, contour: Array, rulings: Array) -> bytes:
     )
     seen = np.concatenate([np.concatenate(ends) for ends in loft.rulings(_SEEN)])
     shapes = (
-        (SURFACE_FILE, brep_text(build_loft(loft))),
+        (SURFACE_FILE, brep_text(surface)),
         (FLAT_FILE, brep_text(flat_face(contour, rulings, np.empty((0, 3))))),
     )
     return packed(document_xml(loft.name, objects), gui_xml(objects, camera(seen)), shapes)
-
-
-def loft_areas(path: Path) -> dict[str, float]:
-    """Read such a document back: areas by the names of its shapes' files, mm2.
-
-    Raises:
-        DeliveryError: it cannot be read, or a shape in it is damaged.
-    """
-    return {name: facts.area for name, facts in kept_facts(path).items()}
 
 
 def _surface_properties(loft: Loft) -> Sequence[AnyProperty]:

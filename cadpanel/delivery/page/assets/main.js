@@ -185,5 +185,6 @@ window.cadpanel = {
   choose: (name) => choose([...model.panels, ...model.seams].find((thing) => thing.name === name) ?? null),
   placeOf: (name) => picker.placeOf([...model.panels, ...model.seams].find((thing) => thing.name === name)),
   drawCalls: () => stage.renderer.info.render.calls,
+  frames: () => stage.renderer.info.render.frame,
 };
 document.body.dataset.ready = "true";

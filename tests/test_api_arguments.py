@@ -72,7 +72,7 @@ MADE = ("to_cadquery", "to_build123d", "write_step")
 # Where each begins to work: what has come so far was accepted.
 WORK = (
     "cadpanel.api.fit_reference",
-    "cadpanel.api.unroll_shape",
+    "cadpanel.api_shapes.unroll_all",
     "cadpanel.brep.read.read_reference",
     "cadpanel.brep.survey.survey",
     "cadpanel.studies.table1.compare",

@@ -32,7 +32,7 @@ def test_a_long_step_says_that_it_is_at_work() -> None:
     shown.begin("Read reference", "roof.step")
     assert stream.something.wait(60.0)
     shown.close()
-    assert stream.getvalue().startswith("Read reference: at work for 0 s\n")
+    assert stream.getvalue().startswith("Read reference: at work for 0 s, roof.step\n")
     said = stream.getvalue()
     shown.begin("Build solids")
     assert stream.getvalue() == said

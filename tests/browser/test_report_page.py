@@ -159,6 +159,8 @@ def test_sliders_and_the_reference_change_the_picture(page: Any) -> None:
     moves = (
         "const e = document.getElementById('apart'); e.value = 60; e.dispatchEvent(new Event('input'))",
         "const e = document.getElementById('axis'); e.value = '0'; e.dispatchEvent(new Event('change'))",
+        "const e = document.getElementById('cut-from'); e.value = 300; e.dispatchEvent(new Event('input'))",
+        "const e = document.getElementById('axis'); e.value = '2'; e.dispatchEvent(new Event('change'))",
         "document.getElementById('ghost').click()",
     )
     for move in moves:

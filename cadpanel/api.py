@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel import api_result
-from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords
+from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords, spells_keywords
 from cadpanel.api_sheets import Panels, build_sheets, shapes_of, title_of
 from cadpanel.delivery.settings import Ends, Schema
 from cadpanel.delivery.shop_settings import ShopKeywords
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 
 @checked
+@spells_keywords("read")
 def read(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Reference:
@@ -60,6 +61,7 @@ def read(
 
 
 @checked
+@spells_keywords("read")
 def inspect(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Survey:
@@ -92,6 +94,7 @@ def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
 
 
 @checked
+@spells_keywords("fit")
 def fit(
     reference: Reference | str | Path,
     settings: FitSettings | None = None,
@@ -131,6 +134,7 @@ def fit(
 
 
 @checked
+@spells_keywords("fit")
 def compare(
     reference: Reference | str | Path,
     settings: FitSettings | None = None,
@@ -175,6 +179,7 @@ def compare(
 
 
 @checked
+@spells_keywords("deliver")
 def deliver(
     result: FitResult,
     out: str | Path,

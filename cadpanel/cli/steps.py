@@ -148,7 +148,8 @@ class WrittenSteps(Steps):
 
 
 def _solving(count: int, excess: float, rms: float) -> str:
-    return f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm"
+    # Nobody knows how many steps there will be: what remains stands in the words.
+    return f"step {count}: worst gap or drift at {excess:.2f} x its limit (held at 1), RMS deviation {rms:.2f} mm"
 
 
 @contextmanager

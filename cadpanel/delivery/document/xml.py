@@ -212,9 +212,10 @@ def _column(place: int) -> str:
 
 
 def _look(look: Look) -> Iterator[str]:
-    """Whether it is visible comes last: FreeCAD makes what it shows then, and anew for every property after that."""
     if look.faces is not None:
+        # Before it is shown, which is when FreeCAD meshes it: half of the time in which a document opens.
         yield _seen("Deviation", "FloatConstraint", f'<Float value="{_DEVIATION!r}"/>')
+    yield _seen("Visibility", "Bool", f'<Bool value="{str(look.visible).lower()}"/>')
     colors: Mapping[str, Color | None] = {"ShapeColor": look.faces, "LineColor": look.lines, "PointColor": look.lines}
     for name, color in colors.items():
         if color is not None:
@@ -225,7 +226,6 @@ def _look(look: Look) -> Iterator[str]:
         yield _seen("ShapeMaterial", "Material", f'<PropertyMaterial diffuseColor="{_packed(look.faces)}" {dull}/>')
     if look.line_width is not None:
         yield _seen("LineWidth", "FloatConstraint", f'<Float value="{look.line_width!r}"/>')
-    yield _seen("Visibility", "Bool", f'<Bool value="{str(look.visible).lower()}"/>')
 
 
 def _seen(name: str, kind: str, value: str) -> str:

@@ -85,6 +85,9 @@ def test_a_mesh_to_look_at_covers_the_whole_skin(edges: tuple[str, ...] | None) 
         out = np.cross(mesh.ways[:, 0], mesh.ways[:, 1])
         assert 0.5 * np.linalg.norm(turned, axis=-1).sum() == pytest.approx(level.area(), rel=5e-4)
         assert np.abs(np.linalg.norm(out, axis=-1) - 1.0).max() < 1e-12
+        away = np.linalg.norm(level.vertices()[:, None] - mesh.points, axis=-1)
+        assert away.min(axis=1).max() < 1e-9
+        assert away.min(axis=0).max() < 0.8 * np.linalg.norm(np.ptp(level.vertices(), axis=0))
         assert (np.einsum("fx,fx->f", turned, out[mesh.triangles[:, 0]]) > 0.0).all()
 
 

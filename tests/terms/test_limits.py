@@ -130,7 +130,7 @@ def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
 @pytest.mark.parametrize("limit", ASKED, ids=lambda limit: limit.name)
 def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(limit: Limit) -> None:
     result = measured_result()
-    for by, kept in ((-1e-6, True), (1e-3, False)):
+    for by, kept in ((-1e-6, True), (0.0, True), (1e-3, False)):
         allowed, worst = broken(limit, by)
         how = replace(result.settings, **cast("dict[str, Any]", allowed))
         assert keeps_limits(result.measures, how) is kept

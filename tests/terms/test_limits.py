@@ -227,5 +227,5 @@ def test_shares_of_a_length_are_asked_for_in_percent_within_the_limits_own_range
         assert option.read("--it", 100.0 * share) == pytest.approx(share, rel=1e-15)
         assert option.show(share) == pytest.approx(100.0 * share, rel=1e-12)
     for share in (0.99 * limit.least, 1.01 * limit.most):
-        with pytest.raises(SettingsError, match="--it must be between 0.01 and 50 percent of the panel's length"):
+        with pytest.raises(SettingsError, match=r"--it must be between 0\.01 and 50 percent of the panel's length"):
             option.read("--it", 100.0 * share)

@@ -219,7 +219,10 @@ def test_overwrite_replaces_a_delivery(run: Run, lip_step: Path, delivery: Path)
 
 def test_what_goes_to_a_file_is_plain_text(lip_step: Path, tmp_path: Path) -> None:
     answer = subprocess.run(
-        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out")], capture_output=True, text=True, timeout=120
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--outputs", "step"],
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     assert answer.returncode == 0
     assert "\x1b" not in answer.stdout + answer.stderr

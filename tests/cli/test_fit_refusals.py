@@ -155,7 +155,7 @@ def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
 def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path: Path) -> None:
     """A limit on the size of a file stands for the full disk: the operating system refuses the write alike."""
     answer = subprocess.run(
-        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--quiet"],
+        [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--quiet", "--outputs", "step"],
         capture_output=True,
         text=True,
         timeout=120,

@@ -61,6 +61,7 @@ KILL, HANG_UP = (signal.SIGTERM, 143, NOTHING), (signal.SIGHUP, 143, NOTHING)
         ),
     ],
 )
+@thorough
 def test_whoever_stops_it_finds_nothing_left(
     lip_step: Path,
     tmp_path: Path,

@@ -76,7 +76,7 @@ def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:
     if [panel.name for panel in scene.panels] != [record.name for record in contents.records]:
         return [f"'{PAGE}' does not show the panels that are delivered."]
     drilled = [
-        f"'{PAGE}' does not show the {len(part.circles)} holes of panel '{panel.name}'."
+        f"'{PAGE}' does not show the {len(part.circles)} holes of panel '{panel.name}': write the delivery again."
         for panel, part in zip(scene.panels, contents.parts, strict=True)
         if hole_count(panel.triangles) != len(part.circles)
     ]

@@ -9,7 +9,7 @@ import pytest
 
 from cadpanel.errors import PanelError
 from cadpanel.geometry.flat_sizes import flat_sizes
-from cadpanel.geometry.returns import ReturnRule, SIDES, foldable_sides, leg_behind, tangent_length, with_returns
+from cadpanel.geometry.returns import SIDES, ReturnRule, foldable_sides, leg_behind, tangent_length, with_returns
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, sheet_depth
 from cadpanel.geometry.unroll import neutral_offset, unroll

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cadpanel.api_loft import deliver_loft, loft
+import cadpanel as cp
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.outputs.freecad import DOCUMENT
 from cadpanel.delivery.own_files import LOFT_DOCUMENT, REPORT
@@ -139,7 +139,7 @@ def test_the_window_shows_panels_coloured_by_deviation_and_red_seams(
 
 @thorough
 def test_the_document_of_a_loft_holds_a_valid_surface_and_its_flat_pattern(tmp_path: Path) -> None:
-    record = deliver_loft(loft(*rails(CYLINDER, second=(0.2, 1.5)), name="hood"), tmp_path / "loft")
+    record = cp.deliver_loft(cp.loft(*rails(CYLINDER, second=(0.2, 1.5)), name="hood"), tmp_path / "loft")
     given = {"CADPANEL_DOCUMENT": str(tmp_path / "loft" / LOFT_DOCUMENT)}
     found = {one["label"]: one for one in run_in_freecad("document_driver.py", given, window=False)["objects"]}
     assert all(found[label]["valid"] for label in ("hood", "hood flat"))

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.cone_sections import axis_frame
-from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, lifted
+from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_section import plane_section
+from cadpanel.geometry.plane_sides import side_curve
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.vectors import cross, side_of, unit
@@ -49,9 +51,7 @@ def skin_mesh(shape: Panel) -> SkinMesh:
 
 def _grid_mesh(shape: Panel) -> SkinMesh:
     """Of patches between two ends: rows from end to end, columns across."""
-    ends = _end_points(shape)
-    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
-    grid = (1.0 - share) * ends[0] + share * ends[1]
+    grid = _grid(shape)
     rows, columns = grid.shape[:2]
     across, along = arc_length(grid[rows // 2]), arc_length(np.swapaxes(grid, 0, 1)[columns // 2])
     chart = np.stack(np.meshgrid(across, along), axis=-1)
@@ -65,25 +65,44 @@ def _grid_mesh(shape: Panel) -> SkinMesh:
     )
 
 
-def _end_points(shape: Panel) -> Array:
-    """(2, c, 3) points along both ends, that of a generatrix or straight line over the skin at the same place."""
+def _grid(shape: Panel) -> Array:
+    """(ALONG + 1, c, 3) points of the skin in rows from end 0 to end 1."""
     corners = shape.corners()
     points, directions, normals = shape.rulings()
-    cuts = tuple(zip(*shape.cuts(), strict=True))
+    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
     parts: list[Array] = []
     for index, patch in enumerate(shape.patches):
         if not isinstance(patch, ConePatch):
-            share = np.linspace(0.0, 1.0, ACROSS + 1)[:, None]
-            part = (1.0 - share) * corners[:, None, index] + share * corners[:, None, index + 1]
+            across = np.linspace(0.0, 1.0, ACROSS + 1)[:, None]
+            ends = (1.0 - across) * corners[:, None, index] + across * corners[:, None, index + 1]
+            part = (1.0 - share) * ends[0] + share * ends[1]
         else:
-            frame = axis_frame(points[index], directions[index], normals[index], patch)
-            steps = min(_MOST_TURNS, max(ACROSS, math.ceil(abs(patch.sweep) / _TURN)))
-            radials = frame.radials(np.linspace(0.0, patch.sweep, steps + 1))
-            at = frame.center + frame.level_radius * radials
-            way = math.cos(frame.half_angle) * frame.axis + math.sin(frame.half_angle) * radials
-            part = np.stack([at + ((q - at) @ m / (way @ m))[:, None] * way for q, m in cuts])
+            part = _round_grid(shape, index, axis_frame(points[index], directions[index], normals[index], patch))
         parts.append(part if not parts else part[:, 1:])
     return np.concatenate(parts, axis=1)
+
+
+def _round_grid(shape: Panel, index: int, frame: AxisFrame) -> Array:
+    """(ALONG + 1, c, 3) points of a round patch: between sides in planes the columns turn with these."""
+    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None]
+    across = np.linspace(0.0, 1.0, min(_MOST_TURNS, max(ACROSS, math.ceil(abs(frame.sweep) / _TURN))) + 1)
+    borders = [np.zeros_like(share), np.full_like(share, frame.sweep)]
+    for side in range(2):
+        curve = (
+            side_curve(shape, side) if isinstance(shape, Chain) and index == (len(shape.patches) - 1) * side else None
+        )
+        if curve is not None:
+            heights = (1.0 - share) * curve.heights[0] + share * curve.heights[1]
+            borders[side] = curve.angles(heights[:, 0])[:, None]
+    angles = (1.0 - across) * borders[0] + across * borders[1]
+    lift = shape.lift if isinstance(shape, Chain) else 0.0
+    cut = lifted(frame, lift)
+    low, high = (
+        plane_section(cut, point, normal).heights(angles[[row]])[0]
+        for row, (point, normal) in zip((0, -1), zip(*shape.cuts(), strict=True), strict=True)
+    )
+    heights = (1.0 - share) * low + share * high
+    return frame.points(angles.ravel(), heights.ravel()).reshape(*angles.shape, 3)
 
 
 def _polygon_mesh(shape: Panel) -> SkinMesh:

@@ -14,11 +14,13 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
+from cadpanel.geometry.chain_cutting import along_rulings
 from cadpanel.geometry.end_leans import leans
 from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.limits import SMALLEST_LENGTH
 from cadpanel.geometry.panel import Chain, Outlined
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import end_spans
 from cadpanel.geometry.vectors import cross, dot, unit
 
 SomeChain = TypeVar("SomeChain", bound=Chain)
@@ -27,7 +29,11 @@ NEARLY_STRAIGHT = 0.05
 
 
 def square_chain(shape: SomeChain, depth: float) -> SomeChain:
-    """A chain whose ends and sides stand square to the sheet, whose other face is at `depth`."""
+    """A chain whose ends and sides stand square to the sheet, whose other face is at `depth`.
+
+    A side in a plane becomes one along a ruling: along a conic its square wall would be no plane.
+    """
+    shape = along_rulings(shape, depth)
     cut_points = shape.cut_points.copy()
     shorter = np.where(np.array([-1.0, 1.0]) * depth * shape.side_leans < 0.0, shape.side_leans, 0.0)
     far = parallel_walk((shape.points, shape.normals, shape.binormals()), shape.patches, shorter, depth)
@@ -37,9 +43,10 @@ def square_chain(shape: SomeChain, depth: float) -> SomeChain:
     )
     moved = shape.rewalked(far.points - depth * far.normals, shape.directions, far.normals, patches)
     rulings = moved.points, moved.directions, moved.normals
+    spans = end_spans(moved)
     for end, outward in ((0, -1.0), (1, 1.0)):
         way_out = outward * shape.cut_normals[end]
-        back = max(0.0, *(depth * lean for lean in leans(rulings, patches, way_out)))
+        back = max(0.0, *(depth * lean for lean in leans(rulings, patches, way_out, spans[end])))
         cut_points[end] -= back * way_out
     return moved.trimmed(cut_points, shape.cut_normals, np.zeros(2)).made_square()
 

@@ -255,7 +255,9 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
         f"has the faces {_described(found)}, expected {_described(wanted)}": wanted != +found,
         f"has {shared} straight shared edges, expected {len(panel.kinds) - 1}": shared != len(panel.kinds) - 1,
         f"has a corner {error:.3g} mm away from where it is expected": not error <= POSITION_LIMIT,
-        "has boundary edges that are neither lines nor ellipses": facts.other_borders > 0,
+        f"has {facts.other_borders} boundary edges that are neither lines nor ellipses, expected {panel.bent_sides}": (
+            facts.other_borders != panel.bent_sides
+        ),
     }
     failures += [f"Panel '{panel.name}': its skin {problem}." for problem, present in problems.items() if present]
     return error

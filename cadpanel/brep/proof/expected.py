@@ -12,7 +12,8 @@ from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.step.properties import PartData
 from cadpanel.geometry.fixings import Hole
-from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.panel import CutPlane, Panel
+from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.trays import TrayShape
 
@@ -98,6 +99,17 @@ class ExpectedPanel:
         """Straight edges of its solid whose two faces are tangent: between patches, and in holes."""
         own = 2 * len(self.kinds) - 2 if self.tray is None else self.tray.plan.seams
         return own + (0 if self.holes is None else self.holes.smooth_edges)
+
+    def side_plane(self, edge: str) -> CutPlane | None:
+        """The plane in which a side stands that follows no ruling; None of all other edges."""
+        if self.sheet is None or not isinstance(self.sheet.shape, PanelShape) or not edge.startswith("side"):
+            return None
+        return self.sheet.shape.side_planes[int(edge[-1])]
+
+    @property
+    def bent_sides(self) -> int:
+        """How many of its sides are neither lines nor arcs of ellipses."""
+        return sum(self.side_plane(side) is not None for side in ("side 0", "side 1"))
 
     @property
     def _outer_walls(self) -> tuple[str, ...]:

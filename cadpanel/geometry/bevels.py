@@ -9,7 +9,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.geometry.end_leans import leans
 from cadpanel.geometry.panel import Chain, Panel
-from cadpanel.geometry.plane_sides import end_spans, side_curve
+from cadpanel.geometry.plane_sides import end_spans, side_curves
 from cadpanel.geometry.shape import edge_corners
 from cadpanel.geometry.vectors import cross, unit
 
@@ -30,8 +30,7 @@ def edge_bevels(shape: Panel, other: Panel) -> dict[str, tuple[float, float]]:
 
 def _bevels(shape: Panel, other: Panel, edge: str) -> tuple[float, float]:
     """Of an edge that is straight, or in which a plane cuts the side of a cone: there it grows or falls all along."""
-    side = int(edge[-1])
-    curve = side_curve(shape, side) if isinstance(shape, Chain) else None
+    curve = side_curves(shape)[int(edge[-1])] if edge.startswith("side") else None
     if curve is None:
         return 2 * (_straight_bevel(shape, other, edge),)
     found = np.arcsin(np.clip(curve.frame.normals(curve.corners) @ shape.edge(edge).outward, -1.0, 1.0))

@@ -16,7 +16,7 @@ from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.plane_sides import end_spans, side_curve
+from cadpanel.geometry.plane_sides import end_spans, side_curves
 from cadpanel.geometry.self_crossing import crosses_itself
 
 SMALLEST_RADIUS = 0.1
@@ -233,14 +233,18 @@ def _check_sides(shape: Chain, where: str) -> None:
     """The planes in which sides stand must leave something of the patches between them, at both ends."""
     if shape.side_planes == (None, None):
         return
-    spans, sides = end_spans(shape), [curve for side in range(2) if (curve := side_curve(shape, side))]
+    spans, sides = end_spans(shape), [curve for curve in side_curves(shape) if curve is not None]
     round_ones = [index for index, patch in enumerate(shape.patches) if isinstance(patch, ConePatch)]
     ways = [np.sign(patch.sweep) for patch in shape.patches if isinstance(patch, ConePatch)]
     left = (spans[:, round_ones, 1] - spans[:, round_ones, 0]) * np.array(ways)
     heights = np.concatenate([curve.heights[0] + np.diff(curve.heights) * _SHARES for curve in sides])
     angles = np.concatenate([curve.angles(heights) for curve in sides])
     if left.min() <= 0.0 or not np.isfinite(angles).all():
-        raise PanelError(shape.name, f"nothing is left of it between the walls at its sides{where}")
+        raise PanelError(
+            shape.name,
+            f"nothing is left of it between the walls at its sides{where}: ask for a narrower joint, or divide the "
+            "reference into fewer panels.",
+        )
 
 
 def _check_cone(shape: Chain, index: int, patch: ConePatch, where: str) -> None:

@@ -60,6 +60,16 @@ class SideCurve:
         return self.section.angles(heights[None], np.array([self.way_out]), self.corners[:1])
 
 
+def planes_of(shape: object) -> tuple[CutPlane | None, CutPlane | None]:
+    """The planes in which a panel's sides stand that follow no ruling; of one that is no chain none does."""
+    return shape.side_planes if isinstance(shape, Chain) else (None, None)
+
+
+def side_curves(shape: object) -> tuple[SideCurve | None, SideCurve | None]:
+    """The curves of its sides, as `side_curve` tells them; of a panel that is no chain none."""
+    return (side_curve(shape, 0), side_curve(shape, 1)) if isinstance(shape, Chain) else (None, None)
+
+
 def side_curve(shape: Chain, side: int) -> SideCurve | None:
     """The curve of a side that stands in a plane, None of one along a ruling.
 

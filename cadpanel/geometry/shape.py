@@ -19,7 +19,7 @@ from cadpanel.geometry.curve_pieces import CurvePieces, segments, together
 from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.panel import CutPlane, PanelEdge, Straightened
 from cadpanel.geometry.patches import Patch, PlanePatch
-from cadpanel.geometry.plane_sides import end_spans, side_curve, side_tangents
+from cadpanel.geometry.plane_sides import end_spans, side_curve, side_curves, side_tangents
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
 from cadpanel.geometry.polygon_cutting import cut_polygon
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
@@ -155,7 +155,7 @@ class PanelShape:
         if self.lift != 0.0:
             raise ValueError(f"panel '{self.name}': the other face of a square sheet ends in no arcs of ellipses")
         ends = chain_arcs(self.rulings(), self.patches, self.cuts(), end_spans(self))
-        return together([ends, *(side_tangents(curve) for side in range(2) if (curve := side_curve(self, side)))])
+        return together([ends, *(side_tangents(curve) for curve in side_curves(self) if curve is not None)])
 
     def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> PanelShape:
         """See `Panel.cut_back`; the side of a round patch keeps behind its plane, and square to the sheet."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, lifted
-from cadpanel.geometry.panel import Chain, Panel
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.plane_section import plane_section
-from cadpanel.geometry.plane_sides import side_curve
+from cadpanel.geometry.plane_sides import side_curves
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.vectors import cross, side_of, unit
@@ -87,18 +87,13 @@ def _round_grid(shape: Panel, index: int, frame: AxisFrame) -> Array:
     share = np.linspace(0.0, 1.0, ALONG + 1)[:, None]
     across = np.linspace(0.0, 1.0, min(_MOST_TURNS, max(ACROSS, math.ceil(abs(frame.sweep) / _TURN))) + 1)
     borders = [np.zeros_like(share), np.full_like(share, frame.sweep)]
-    for side in range(2):
-        curve = (
-            side_curve(shape, side) if isinstance(shape, Chain) and index == (len(shape.patches) - 1) * side else None
-        )
-        if curve is not None:
+    for side, curve in enumerate(side_curves(shape)):
+        if curve is not None and index == side * (len(shape.patches) - 1):
             heights = (1.0 - share) * curve.heights[0] + share * curve.heights[1]
             borders[side] = curve.angles(heights[:, 0])[:, None]
     angles = (1.0 - across) * borders[0] + across * borders[1]
-    lift = shape.lift if isinstance(shape, Chain) else 0.0
-    cut = lifted(frame, lift)
     low, high = (
-        plane_section(cut, point, normal).heights(angles[[row]])[0]
+        plane_section(frame, point, normal).heights(angles[[row]])[0]
         for row, (point, normal) in zip((0, -1), zip(*shape.cuts(), strict=True), strict=True)
     )
     heights = (1.0 - share) * low + share * high

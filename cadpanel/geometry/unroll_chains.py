@@ -12,7 +12,7 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.flat_curves import FlatCurves, joined, segments
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curves
 from cadpanel.geometry.vectors import cross, dot, unit
 
 
@@ -66,7 +66,7 @@ def chain_arrays(shapes: Sequence[Chain]) -> ChainArrays:
         cut_normals=np.array([shape.cut_normals for shape in shapes]),
         lift=np.array([shape.lift for shape in shapes]),
         spans=np.array([end_spans(shape) for shape in shapes]),
-        sides=[(side_curve(shape, 0), side_curve(shape, 1)) for shape in shapes],
+        sides=[side_curves(shape) for shape in shapes],
     )
 
 

@@ -20,7 +20,7 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_cone, lifted
 from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, planes_of, side_curves
 from cadpanel.geometry.vectors import cross
 
 SWEEP_NODES = 48
@@ -57,7 +57,7 @@ def beyond_quadratic(shape: Panel, depth: float, share: float) -> float:
     The quadratic is the one with the areas of both faces and the volume between them. More than a hair is left only
     where a side stands in a plane that meets a cone in no ruling.
     """
-    if not isinstance(shape, Chain) or shape.side_planes == (None, None):
+    if planes_of(shape) == (None, None):
         return 0.0
     near, far, own = (shape.offset(part * depth).area() for part in (0.0, 1.0, share))
     mean = sheet_volume(shape, abs(depth), "outer" if depth < 0.0 else "inner") / abs(depth)
@@ -90,8 +90,8 @@ def _heights(cut: ConeCut, level_radius: float, half_angle: float, sweep_angles:
 def _cone_area(shape: Chain, index: int, patch: ConePatch) -> float:
     """Integral over phi of the integral over the generatrix of (level_radius + height * sin(half_angle))."""
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
-    sides = {side: side_curve(shape, side) for side in range(2) if shape.patches[-side] is patch}
-    curves = {side: curve for side, curve in sides.items() if curve is not None}
+    ends = {0: 0, 1: len(shape.patches) - 1}
+    curves = {side: curve for side, curve in enumerate(side_curves(shape)) if curve is not None and ends[side] == index}
     if curves:
         return _area_between(shape, index, frame, curves)
     angles = 0.5 * patch.sweep * (1.0 + _SWEEP_ABSCISSAE)

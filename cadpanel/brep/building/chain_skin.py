@@ -21,7 +21,7 @@ from cadpanel.brep.building.interpolation import interpolate
 from cadpanel.brep.building.normal_walls import NormalStrip, strip_along_arc
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection, axis_frame, cut_cone, elliptic_section, lifted
 from cadpanel.geometry.patches import ConePatch, Patch
-from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curves
 from cadpanel.geometry.shape import PanelShape
 
 _BUILDER = BRep_Builder()
@@ -59,7 +59,7 @@ def skin_topology(shape: PanelShape) -> SkinTopology:
     corners = shape.corners()
     rulings_count = len(shape.points)
     vertices = [[edges.vertex_at(corners[end, ruling]) for ruling in range(rulings_count)] for end in range(2)]
-    sides = {0: side_curve(shape, 0), rulings_count - 1: side_curve(shape, 1)}
+    sides = dict(zip((0, rulings_count - 1), side_curves(shape), strict=True))
     rulings = [
         _along((vertices[0][ruling], vertices[1][ruling]), corners[:, ruling], sides.get(ruling))
         for ruling in range(rulings_count)

@@ -13,7 +13,7 @@ from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.step.properties import PartData
 from cadpanel.geometry.fixings import Hole
 from cadpanel.geometry.panel import CutPlane, Panel
-from cadpanel.geometry.shape import PanelShape
+from cadpanel.geometry.plane_sides import planes_of
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.trays import TrayShape
 
@@ -102,9 +102,9 @@ class ExpectedPanel:
 
     def side_plane(self, edge: str) -> CutPlane | None:
         """The plane in which a side stands that follows no ruling; None of all other edges."""
-        if self.sheet is None or not isinstance(self.sheet.shape, PanelShape) or not edge.startswith("side"):
+        if self.sheet is None or not edge.startswith("side"):
             return None
-        return self.sheet.shape.side_planes[int(edge[-1])]
+        return planes_of(self.sheet.shape)[int(edge[-1])]
 
     @property
     def bent_sides(self) -> int:

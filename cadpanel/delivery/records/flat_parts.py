@@ -18,9 +18,9 @@ from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.flat_curves import joined
 from cadpanel.geometry.flat_sizes import FlatSize, flat_sizes
-from cadpanel.geometry.panel import Chain, Panel
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch, Patch
-from cadpanel.geometry.plane_sides import side_curve
+from cadpanel.geometry.plane_sides import side_curves
 from cadpanel.geometry.sheet_checks import other_face
 from cadpanel.geometry.smallest_rectangle import Rectangle
 from cadpanel.geometry.trays import TrayShape
@@ -184,8 +184,7 @@ def _end_angles(shape: Panel) -> Array:
     _, _, normals = shape.rulings()
     _, cut_normals = shape.cuts()
     ends = np.tile(normals, (2, 1, 1))
-    for side in range(2):
-        curve = side_curve(shape, side) if isinstance(shape, Chain) else None
+    for side, curve in enumerate(side_curves(shape)):
         if curve is not None:
             ends[:, -side] = curve.frame.normals(curve.corners)
     ways = unit(cross(ends, np.broadcast_to(cut_normals[:, None], ends.shape)))

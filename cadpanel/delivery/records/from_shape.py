@@ -19,9 +19,9 @@ from cadpanel.delivery.records.patches import (
 )
 from cadpanel.delivery.records.report import FittedModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, lifted, radius_range
-from cadpanel.geometry.panel import Chain, Panel
+from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch, Patch
-from cadpanel.geometry.plane_sides import end_spans
+from cadpanel.geometry.plane_sides import end_spans, planes_of
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.trays import TrayShape
 
@@ -123,7 +123,7 @@ def cut_models(shape: Panel) -> tuple[CutModel, ...]:
 
 def side_cut_models(shape: Panel) -> tuple[CutModel | None, ...]:
     """The planes in which a panel's sides stand that follow no ruling; none where both do."""
-    planes = shape.side_planes if isinstance(shape, Chain) else (None, None)
+    planes = planes_of(shape)
     if planes == (None, None):
         return ()
     return tuple(None if plane is None else cut_model(plane.point, plane.normal) for plane in planes)

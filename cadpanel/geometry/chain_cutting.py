@@ -51,14 +51,6 @@ def cut_chain(shape: SomeChain, planes: Mapping[str, CutPlane], depth: float) ->
     return cut
 
 
-def along_rulings(shape: SomeChain, depth: float) -> SomeChain:
-    """The chain with its sides along rulings, square to the sheet, where they stood in planes."""
-    for side, plane in enumerate(shape.side_planes):
-        if plane is not None:
-            shape = _along_a_ruling(shape.walled(side, None), side, plane, depth)
-    return shape
-
-
 def _beside_a_cone(shape: SomeChain, side: int, plane: CutPlane, depth: float) -> SomeChain:
     """The side of a round patch along a ruling, or in the plane where that leaves a joint wider than it should be."""
     ruled = _along_a_ruling(shape, side, plane, depth)
@@ -67,11 +59,15 @@ def _beside_a_cone(shape: SomeChain, side: int, plane: CutPlane, depth: float) -
     corners = [face.corners()[:, -side] for face in (ruled, ruled.offset(depth))]
     if max(float(-plane.beyond(of).min()) for of in corners) <= AS_WIDE:
         return ruled
-    return _in_plane(shape, side, plane, depth)
+    return side_in_plane(shape, side, plane, depth)
 
 
-def _in_plane(shape: SomeChain, side: int, plane: CutPlane, depth: float) -> SomeChain:
-    """The side of a round patch in a plane, its ruling that through the outermost of its four corners."""
+def side_in_plane(shape: SomeChain, side: int, plane: CutPlane, depth: float) -> SomeChain:
+    """The side of a round patch in a plane, its ruling that through the outermost of its four corners.
+
+    Raises:
+        PanelError: the plane misses its side.
+    """
     index = 0 if side == 0 else len(shape.patches) - 1
     patch = shape.patches[index]
     assert isinstance(patch, ConePatch)

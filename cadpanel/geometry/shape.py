@@ -162,7 +162,7 @@ class PanelShape:
         return cut_chain(self, planes, depth)
 
     def squared(self, depth: float) -> PanelShape:
-        """See `Panel.squared`; an end stays in a plane, as far back as its walls lean in where they do most."""
+        """See `Panel.squared`; an end, or a side in a plane, stays in one, back by what its walls lean in at most."""
         return square_chain(self, depth)
 
     def area(self) -> float:

@@ -141,3 +141,17 @@ def test_planes_that_leave_nothing_or_miss_are_refused():
         narrow.check()
     with pytest.raises(PanelError, match="side 1"):
         frustum().cut_back({"side 1": jointed(frustum(), 1, -2_000.0, 0.0)}, -3.0)
+
+
+@pytest.mark.parametrize("depth", [-8.0, 3.0])
+def test_a_square_wall_keeps_behind_the_plane_and_touches_it_with_its_shorter_face(depth):
+    cut = cut_frustum(depth)
+    square = cut.squared(depth)
+    check_buildable(square, abs(depth), skin_side_of(depth))
+    for side, (near, far) in enumerate(zip(curves_of(square), curves_of(square.offset(depth)), strict=True)):
+        heights = near.heights[0] + SHARES * np.ptp(near.heights)
+        points, others = near.points(heights), far.points(heights)
+        assert others - points == pytest.approx(depth * near.frame.normals(near.angles(heights)), abs=CLOSE)
+        edge = cut.edge(f"side {side}")
+        beyond = [(row - edge.corners[0]) @ edge.outward for row in (points, others)]
+        assert max(row.max() for row in beyond) == pytest.approx(0.0, abs=CLOSE)

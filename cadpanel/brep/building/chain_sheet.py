@@ -1,4 +1,4 @@
-"""The sheet of a chain: two parallel skins, end walls in the cut planes or square to the sheet, planar side walls."""
+"""The sheet of a chain: two parallel skins, and walls that are planes, or square to the sheet."""
 
 from __future__ import annotations
 
@@ -68,6 +68,11 @@ def _side_wall(
         loop = [edge.Reversed() for edge in reversed(loop)]
     side = 0 if ruling == 0 else 1
     plane = shape.side_planes[side]
+    if plane is not None and shape.square:
+        far = top if top.side_strips else bottom
+        near = bottom if far is top else top
+        along = near.rulings[ruling], far.rulings[ruling]
+        return strip_wall(far.side_strips[ruling], loop, along, posts, plane.normal)
     if plane is not None:
         wall = surfaces.plane_surface(plane.point, plane.normal, cross(plane.normal, shape.normals[ruling]))
         return edges.face_on(wall.surface, wall.agrees, loop)

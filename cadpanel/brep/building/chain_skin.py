@@ -18,7 +18,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Vertex
 from cadpanel.arrays import Array
 from cadpanel.brep.building import edges, surfaces
 from cadpanel.brep.building.interpolation import interpolate
-from cadpanel.brep.building.normal_walls import NormalStrip, strip_along_arc
+from cadpanel.brep.building.normal_walls import NormalStrip, strip_along_arc, strip_along_side
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection, axis_frame, cut_cone, elliptic_section, lifted
 from cadpanel.geometry.patches import ConePatch, Patch
 from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curves
@@ -39,6 +39,7 @@ class SkinTopology:
         faces: k faces with their normals along n.
         strips: [end][patch] on the other face of a square sheet: the normals between the two faces at the ends of round
             patches; empty elsewhere.
+        side_strips: the same by the rulings of sides that stand in planes.
     """
 
     corners: Array
@@ -47,6 +48,7 @@ class SkinTopology:
     ends: tuple[tuple[TopoDS_Edge, ...], tuple[TopoDS_Edge, ...]]
     faces: tuple[TopoDS_Face, ...]
     strips: tuple[dict[int, NormalStrip], dict[int, NormalStrip]]
+    side_strips: dict[int, NormalStrip]
 
 
 def chain_skin(shape: PanelShape) -> tuple[TopoDS_Face, ...]:
@@ -60,8 +62,15 @@ def skin_topology(shape: PanelShape) -> SkinTopology:
     rulings_count = len(shape.points)
     vertices = [[edges.vertex_at(corners[end, ruling]) for ruling in range(rulings_count)] for end in range(2)]
     sides = dict(zip((0, rulings_count - 1), side_curves(shape), strict=True))
+    side_strips = {
+        ruling: strip_along_side(curve, shape.lift)
+        for ruling, curve in sides.items()
+        if curve is not None and shape.lift != 0.0
+    }
     rulings = [
-        _along((vertices[0][ruling], vertices[1][ruling]), corners[:, ruling], sides.get(ruling))
+        edges.spline_edge(vertices[0][ruling], vertices[1][ruling], side_strips[ruling].far)
+        if ruling in side_strips
+        else _along((vertices[0][ruling], vertices[1][ruling]), corners[:, ruling], sides.get(ruling))
         for ruling in range(rulings_count)
     ]
     ends: list[list[TopoDS_Edge]] = [[], []]
@@ -90,6 +99,7 @@ def skin_topology(shape: PanelShape) -> SkinTopology:
         ends=(tuple(ends[0]), tuple(ends[1])),
         faces=tuple(faces),
         strips=strips,
+        side_strips=side_strips,
     )
 
 

@@ -22,6 +22,7 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.sampled_curves import POINTS, reach
+from cadpanel.geometry.shape import edge_corners
 from cadpanel.geometry.vectors import unit
 
 CLEAR_LIMIT = 1e-6
@@ -109,6 +110,8 @@ def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     if standing is not None:
         return _wall_in(solid, *standing)
     corners = panel.corners
+    if panel.side_plane(edge) is not None:
+        return _wall_at_side(solid, edge_corners(corners, edge))
     chosen = edge_pieces(solid, corners, edge)
     if chosen is None:
         return None
@@ -133,7 +136,7 @@ def _standing(panel: ExpectedPanel, edge: str) -> tuple[Array, Array] | None:
     if panel.tray is not None:
         return panel.tray.wall(edge)
     plane = panel.side_plane(edge)
-    if plane is not None:
+    if plane is not None and not panel.square:
         return plane.point, plane.normal
     if panel.sheet is None or not edge.startswith("side") or not panel.folded[int(edge[-1])]:
         return None
@@ -153,6 +156,17 @@ def _wall_in(solid: ShapeFacts, point: Array, normal: Array) -> _Wall | None:
     own = np.any([solid.bounds(face) for face in there], axis=0)
     others = solid.other_points[np.isin(solid.other_edges, there).any(axis=1)]
     return _Wall(solid.pieces.take(own), point, normal, others)
+
+
+def _wall_at_side(solid: ShapeFacts, corners: Array) -> _Wall | None:
+    """The wall of normals at a side that is neither a line nor an arc, from corner (2, 3) to corner."""
+    ends = solid.other_points[:, [0, -1]]
+    off = np.minimum(*(np.abs(ends - row).max(axis=(1, 2), initial=0.0) for row in (corners, corners[::-1])))
+    if not len(off) or off.min() > CLEAR_LIMIT:
+        return None
+    walls = [face for face in solid.other_edges[int(off.argmin())].tolist() if np.isnan(solid.surfaces[face, 6])]
+    own = np.asarray(np.isin(solid.piece_faces, walls).any(axis=1))
+    return _Wall(solid.pieces.take(own), others=solid.other_points[np.isin(solid.other_edges, walls).any(axis=1)])
 
 
 def _walls_of_pieces(solid: ShapeFacts, corners: Array, chosen: IntArray) -> _Wall:

@@ -120,7 +120,8 @@ class ExpectedPanel:
         if not self.square:
             return 4 * ("plane",)
         ends = tuple("plane" if kind == "plane" else "other" for kind in self.kinds)
-        return (*ends, *ends, "plane", "plane")
+        bent = self.bent_sides
+        return (*ends, *ends, *(2 - bent) * ("plane",), *bent * ("other",))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

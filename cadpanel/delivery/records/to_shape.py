@@ -53,14 +53,12 @@ def _before_folding(panel: PanelModel, depth: float, *, square: bool = False) ->
         posts = None if square else moves[0]
         return _polygon(panel, corners[0], posts, square=square)
     shape = _chain(panel, panel.rulings, panel.cuts)
-    if square:
-        return shape.made_square()
     leans = _side_leans(moves, shape.binormals(), shape.normals, shape.patches)
     for side, cut in enumerate(panel.side_cuts):
         if cut is not None:
             normal = np.array(cut.normal)
             shape, leans[side] = shape.walled(side, CutPlane(point=cut.offset * normal, normal=normal)), 0.0
-    return shape.trimmed(*shape.cuts(), leans)
+    return shape.made_square() if square else shape.trimmed(*shape.cuts(), leans)
 
 
 def recorded_shapes(report: ReportModel) -> list[Built]:

@@ -222,7 +222,7 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.server": "tests/brep/test_read.py",
     "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
-    "cadpanel.cli.region_lines": "tests/cli/test_run.py",
+    "cadpanel.cli.silence": "tests/cli/test_steps.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.summary_table": "tests/cli/test_run.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",

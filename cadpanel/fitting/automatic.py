@@ -76,22 +76,28 @@ class _Seen:
         return self.result.tolerance_met and not len(self.lost)
 
     @property
-    def excess(self) -> float:
-        """By how much gaps and limits exceed what is allowed; 1 where all hold, or would if seams were tightened."""
+    def excesses(self) -> tuple[float, float]:
+        """By how much limits, and gaps, exceed what is allowed; 1 where all hold, or would if seams were tightened."""
         m, how = self.result.measures, self.result.settings
         if how.weights is not None:
-            return 1.0
-        over = [limit.excess(m, allowed) for limit, allowed in limits_of(how)]
-        if self.result.stopped is not Stop.OPEN_BETWEEN:
-            over += [m.gaps[what] / allowed for what, allowed in how.gaps.items()]
-        return _told(max(float(one.max(initial=1.0)) for one in over))
+            return 1.0, 1.0
+        limits = [float(limit.excess(m, allowed).max(initial=1.0)) for limit, allowed in limits_of(how)]
+        if self.result.stopped is Stop.OPEN_BETWEEN:
+            return _told(max(limits)), 1.0
+        gaps = [float((m.gaps[what] / allowed).max(initial=1.0)) for what, allowed in how.gaps.items()]
+        return _told(max(limits)), _told(max(gaps))
+
+    @property
+    def excess(self) -> float:
+        """The larger of both."""
+        return max(self.excesses)
 
     @property
     def worth(self) -> tuple[float, ...]:
-        """Less is better: what cannot be built or exceeds gaps and limits, too large deviations, features' expense."""
+        """Less is better: what cannot be built, what exceeds limits, gaps, then deviations, and what features cost."""
         far = self.result.measures.max_deviation.max(initial=0.0) / (self.result.settings.max_deviation or np.inf)
         expense = float(self.chosen.sum())
-        return float(len(self.lost)), float(not self.does), self.excess, _told(max(1.0, float(far))), expense
+        return float(len(self.lost)), float(not self.does), *self.excesses, _told(max(1.0, float(far))), expense
 
 
 def _told(value: float) -> float:

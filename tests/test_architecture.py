@@ -216,7 +216,6 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.cutting.by_stations": "tests/brep/cutting/test_ways.py",
     "cadpanel.brep.files.brep": "tests/brep/files/test_formats.py",
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",
-    "cadpanel.brep.proof.archive": "tests/delivery/document/test_proof.py",
     "cadpanel.brep.proof.kept_facts": "tests/delivery/document/test_proof.py",
     "cadpanel.brep.proof.shape_facts": "tests/brep/proof/test_certificate.py",
     "cadpanel.brep.server": "tests/brep/test_read.py",
@@ -229,6 +228,7 @@ THROUGH_A_DOOR = {
     "cadpanel.delivery.drawing.marks": "tests/delivery/drawing/test_part.py",
     "cadpanel.delivery.meshes.panels": "tests/delivery/meshes/test_glb.py",
     "cadpanel.delivery.meshes.proof": "tests/delivery/meshes/test_glb.py",
+    "cadpanel.delivery.document.loft": "tests/cli/test_loft.py",
     "cadpanel.delivery.document.neighbours": "tests/freecad/test_freecad_document.py",
     "cadpanel.delivery.document.panels": "tests/freecad/test_freecad_document.py",
     "cadpanel.delivery.outputs.tables": "tests/delivery/schedule/test_setting_out_rows.py",
@@ -264,6 +264,10 @@ THROUGH_A_DOOR = {
     "cadpanel.reference.outline_faults": "tests/reference/test_outline.py",
     "cadpanel.jobs.make": "tests/cli/test_fit.py",
     "cadpanel.terms.limits.chains": "tests/terms/test_limits.py",
+    "cadpanel.studies.baselines.cone_strip": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.fitted": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.lofted": "tests/studies/baselines/test_catalogue.py",
+    "cadpanel.studies.baselines.tangent_planes": "tests/studies/baselines/test_catalogue.py",
 }
 
 

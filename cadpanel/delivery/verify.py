@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents, Proof
@@ -123,7 +124,13 @@ def contents_of(report: ReportModel, shapes: Sequence[Built]) -> Contents:
     )
 
 
-def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: Helper | None = None) -> Proved:
+def prove(
+    folder: Path,
+    contents: Contents,
+    outputs: Sequence[Output],
+    helper: Helper | None = None,
+    built: Mapping[str, Rebuilt] | None = None,
+) -> Proved:
     """What reading the files in a folder back shows.
 
     Args:
@@ -131,12 +138,13 @@ def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: H
         contents: what they must tell of.
         outputs: those that were written.
         helper: a second interpreter that is running already.
+        built: by name, what bounds panels that were built from the same numbers already; others are built anew.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
     found = _prove_each(folder, contents, outputs)
-    proved = prove_steps(folder, contents, helper)
+    proved = prove_steps(folder, contents, helper, built)
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import singledispatch
-from typing import cast
 
 import numpy as np
 
@@ -31,7 +30,6 @@ def _chains_alike(one: PanelShape, other: Panel) -> bool:
     """The same of panels between rulings."""
     if type(one) is not type(other):
         return False
-    other = cast(PanelShape, other)
     if (one.feature, one.square, len(one.patches)) != (other.feature, other.square, len(other.patches)):
         return False
     if not all(_patches_alike(own, wanted) for own, wanted in zip(one.patches, other.patches, strict=True)):

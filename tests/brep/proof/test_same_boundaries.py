@@ -8,7 +8,7 @@ from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.proof.boundary import Boundary, difference
 from cadpanel.brep.proof.inspection import boundary_of
 from cadpanel.brep.proof.same_boundaries import same_boundaries
-from tests.brep.proof.test_boundary import SHAPES, shuffled
+from tests.boundaries import SHAPES, shuffled
 
 
 def wanted():

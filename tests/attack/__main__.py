@@ -20,6 +20,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from cadpanel.brep.kernel.messages import silence_kernel
 from tests.attack.fuzz import KINDS, Fuzzer
 from tests.attack.kill import GONE_WITHIN, Killer
 from tests.attack.tamper import Tamperer
@@ -33,6 +34,7 @@ def main(words: Sequence[str] | None = None) -> int:
     """See the module's text."""
     options = _options(words)
     began = time.monotonic()
+    silence_kernel()  # which tells of every file that it writes
     with tempfile.TemporaryDirectory(prefix="attack-") as name:
         came_through = {"fuzz": fuzz, "tamper": tamper, "kill": kill}[options.attack](Path(name), options)
     print(f"{came_through} came through; {time.monotonic() - began:.0f} s")

@@ -28,6 +28,7 @@ from cadpanel.errors import (
 
 if TYPE_CHECKING:
     from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, unroll, write_step
+    from cadpanel.api_job import run_job
     from cadpanel.api_loft import deliver_loft, rails
     from cadpanel.api_result import FitResult
     from cadpanel.api_studies import fewest_panels, study
@@ -103,6 +104,7 @@ __all__ = [
     "loft",
     "rails",
     "read",
+    "run_job",
     "study",
     "to_build123d",
     "to_cadquery",
@@ -114,6 +116,7 @@ __all__ = [
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
         "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "unroll", "write_step"),
+        "api_job": ("run_job",),
         "api_loft": ("deliver_loft", "rails"),
         "api_result": ("FitResult",),
         "api_studies": ("fewest_panels", "study"),

@@ -27,6 +27,7 @@ FIRST = (
     "cli/test_stopping.py",
     "cli/test_portability.py",
     "cli/test_fit.py",
+    "cli/test_fit_refusals.py",
     "fitting/test_automatic.py",
     "fitting/test_every_feature.py",
     "terms/test_adding_a_limit.py",

@@ -52,6 +52,7 @@ CALLS: dict[str, Callable[[], dict[str, Any]]] = {
     "fit_cylinder": lambda: {"points": POINTS},
     "fit_cone": lambda: {"points": POINTS},
     "assemble": lambda: {"deliveries": ["none"], "file": "none.step"},
+    "run_job": lambda: {"job": "none.toml"},
     "rails": lambda: {"path": "none.step"},
     "loft": lambda: {"a": RAIL, "b": RAIL + np.array([0.0, 0.0, 500.0])},
     "deliver_loft": lambda: {"loft": spanned(), "out": "none"},
@@ -72,6 +73,7 @@ MADE = ("to_cadquery", "to_build123d", "write_step")
 # Where each begins to work: what has come so far was accepted.
 WORK = (
     "cadpanel.api.fit_reference",
+    "cadpanel.api_job.read_job",
     "cadpanel.api.unroll_shape",
     "cadpanel.brep.read.read_reference",
     "cadpanel.brep.survey.survey",

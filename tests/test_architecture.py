@@ -26,7 +26,19 @@ HEAVY = {"OCP", "cadquery", "build123d", "vtk", "vtkmodules", "matplotlib", "IPy
 
 # What users import from cadpanel itself. A name that leaves this list breaks someone's script.
 PUBLIC = {
-    *("read", "inspect", "fit", "fewest_panels", "compare", "study", "deliver", "verify", "diff", "assemble"),
+    *(
+        "read",
+        "inspect",
+        "fit",
+        "fewest_panels",
+        "compare",
+        "study",
+        "deliver",
+        "verify",
+        "diff",
+        "assemble",
+        "run_job",
+    ),
     *("build_solid", "build_skin", "to_cadquery", "to_build123d", "write_step", "unroll"),
     *("FitSettings", "ReferenceSettings", "Weights", "FitResult", "Measures", "Survey", "Verification"),
     *("Reference", "PanelReference", "Seam", "PanelShape", "PolygonShape", "PlanePatch", "ConePatch", "FlatPattern"),
@@ -242,6 +254,7 @@ THROUGH_A_DOOR = {
         for name in ("checks", "colors", "commands", "fit_dialog", "init_gui", "qt")
     },
     "cadpanel.geometry.unroll_chains": "tests/geometry/test_unroll.py",
+    "cadpanel.api_job": "tests/cli/test_run.py",
     "cadpanel.api_loft": "tests/cli/test_loft.py",
     "cadpanel.lofting.checks": "tests/lofting/test_loft.py",
     "cadpanel.lofting.pieces": "tests/lofting/test_flat.py",

@@ -128,6 +128,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _unexpected(error)
     if status == EXIT_INTERRUPTED:
         complain("Interrupted.\n")
+        # An interrupt that went through Python text run by an extension, as while the kernel's binding loads, is kept
+        # in mind by CPython, which then ends by the signal whatever code is returned. Running text makes it forget.
+        exec("")
     return status if isinstance(status, int) else 0
 
 

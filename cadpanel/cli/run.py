@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import os
 import time
-from collections.abc import Callable
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from cadpanel.api_job import run_regions, target_of
 from cadpanel.cli import options
 from cadpanel.cli.groups import OUTPUT, RUN
 from cadpanel.cli.region_lines import region_lines
-from cadpanel.delivery.source_date import VARIABLE, source_date
-from cadpanel.errors import SettingsError
-from cadpanel.jobs.engine.cluster import Cluster
-from cadpanel.jobs.engine.engine import Engine
-from cadpanel.jobs.engine.serial import Serial
 from cadpanel.jobs.read import read_job
-from cadpanel.jobs.run import Place, run_job
-from cadpanel.jobs.task import task_of
+from cadpanel.jobs.run import Place
 
 JobFile = Annotated[
     Path, typer.Argument(metavar="JOB", help="TOML file with the regions of a building; 'cadpanel init' writes one.")
@@ -93,31 +85,14 @@ def run(
     refused; 3 a region failed as nobody foresaw, and the summary says where.
     """
     began = time.perf_counter()
-    if workers is not None and scheduler is not None:
-        raise SettingsError("--workers start here, and --scheduler has its own: give one of the two")
     asked = read_job(job)
-    target = out or asked.out
-    if target is None:
-        raise SettingsError(f"'{job}' names no folder to write into: give --out, or 'out = \"...\"' in the job")
-    source_date()  # refused before anything else is done
-    parts = [(region, task_of(region, os.environ.get(VARIABLE))) for region in asked.regions]
-    with ExitStack() as opened, region_lines(len(parts), quiet=quiet, told=tell_steps) as shown:
-        from cadpanel.jobs.results import Results, usual_folder  # dear at every start, and for jobs alone
-
-        results = opened.enter_context(Results(cache or usual_folder()))
+    target = target_of(asked, out)
+    with region_lines(len(asked.regions), quiet=quiet, told=tell_steps) as shown:
         place = Place(out=target, overwrite=overwrite, fresh=fresh, tell=shown.done)
-        summary = run_job(parts, place, _engine(opened, workers, scheduler), results, shown.tell)
+        summary = run_regions(asked, place, workers=workers, scheduler=scheduler, cache=cache, tell_steps=shown.tell)
     if not quiet:
         from cadpanel.cli.summary_table import print_summary
 
         print_summary(summary, target, time.perf_counter() - began)
     if summary.code:
         raise typer.Exit(summary.code)
-
-
-def _engine(opened: ExitStack, workers: int | None, scheduler: str | None) -> Callable[[], Engine]:
-    """What makes regions; workers are started where something is to be made, and end with the run."""
-    if workers is None and scheduler is None:
-        return Serial
-    cluster = Cluster(workers=workers, scheduler=scheduler)
-    return lambda: opened.enter_context(cluster)

@@ -48,7 +48,7 @@ class Place:
     tell: TellRow = field(default=lambda _: None)
 
 
-def run_job(
+def make_regions(
     parts: Sequence[Part], place: Place, engine: Callable[[], Engine], results: Results | None, tell: TellOf
 ) -> SummaryModel:
     """Make every region that is not there yet.

@@ -11,7 +11,6 @@ from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Any
 
-import cadpanel
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -153,7 +152,7 @@ def _content(path: Path) -> Content:
 def program() -> Mapping[str, Any]:
     """Which program it is: its version, its own text, and the versions of what it computes with."""
     text = hashlib.sha256()
-    home = Path(cadpanel.__file__).parent
+    home = Path(__file__).parents[1]
     for file in sorted(home.rglob("*.py")):
         text.update(file.relative_to(home).as_posix().encode() + b"\0" + file.read_bytes())
     return {"version": version("cadpanel"), "text": text.hexdigest(), "packages": _packages()}

@@ -17,6 +17,7 @@ from cadpanel.atomic.orthogonal import descend
 from cadpanel.atomic.plane import fit_planes
 from cadpanel.atomic.ruling import CONE, CYLINDER, Rulings, distance_rows
 from tests.atomic.known_samples import between, known_cone, rotation
+from tests.thorough import thorough
 
 pytestmark = pytest.mark.each_value_once
 
@@ -176,6 +177,7 @@ def any_starts(random, count, x, *, tapered):
     )
 
 
+@thorough
 def test_the_covariance_is_what_repeated_measurements_scatter():
     random = np.random.default_rng(29)
     known = known_cone(random, radius=1000.0, half_angle=0.15, arc=1.5, length=1200.0, count=40)

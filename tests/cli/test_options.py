@@ -180,19 +180,13 @@ def test_help_and_refusals_wait_neither_for_the_kernel_nor_for_scipy() -> None:
 NONE, BESIDE, OUT = ("none.step",), ("there.step", "--network", "none.step"), ("--out", "out")
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        *(("fit", *NONE, *OUT), ("compare", *NONE, *OUT), ("inspect", *NONE)),
-        *(("fit", *BESIDE, *OUT), ("compare", *BESIDE, *OUT)),
-    ],
-)
-def test_a_file_that_is_not_there_is_told_before_the_kernel_is_loaded(tmp_path: Path, words: tuple[str, ...]) -> None:
+def test_a_file_that_is_not_there_is_told_before_the_kernel_is_loaded(tmp_path: Path) -> None:
+    every = (("fit", *NONE, *OUT), ("compare", *NONE, *OUT), ("inspect", *NONE), ("fit", *BESIDE, *OUT))
     (tmp_path / "there.step").write_text("ISO-10303-21;")
     code = (
-        f"import sys; from cadpanel.cli.main import main; code = main({[*words]!r}); "
-        "print(code, sorted({'OCP', 'scipy'} & set(sys.modules)))"
+        f"import sys; from cadpanel.cli.main import main; codes = [main([*words]) for words in {every!r}]; "
+        "print(codes, sorted({'OCP', 'scipy'} & set(sys.modules)))"
     )
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
-    assert found.stdout == "2 []\n"
-    assert found.stderr == "'none.step' does not exist: check the name and the folder.\n"
+    assert found.stdout == "[2, 2, 2, 2] []\n"
+    assert found.stderr == len(every) * "'none.step' does not exist: check the name and the folder.\n"

@@ -73,6 +73,7 @@ def test_a_run_is_delivered_and_verified_without_what_posix_alone_has(
     assert (answer.returncode, answer.stderr) == (0, "")
 
 
+@thorough
 def test_bad_files_are_one_sentence_there_too(elsewhere: dict[str, str], tmp_path: Path) -> None:
     broken = tmp_path / "broken.step"
     broken.write_text("ISO-10303-21;\nHEADER;\n", encoding="utf-8")

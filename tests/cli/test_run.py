@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import cadpanel as cp
 from tests.cli.conftest import Run
 
 JOB = """
@@ -51,6 +52,19 @@ def test_a_job_is_run_told_and_summed_up_and_its_worst_region_is_the_exit_code(
     assert (kept.code, kept.out, kept.err) == (1, "", "")
     assert (tmp_path / "other" / "A" / "job.toml").is_file()
     assert run("verify", tmp_path / "other" / "A", "--quiet").code == 0
+
+
+def test_python_runs_a_job_as_the_command_does(job: Path, tmp_path: Path) -> None:
+    rows: list[str] = []
+    summary = cp.run_job(job, tmp_path / "here", cache=tmp_path / "cache", tell=lambda row: rows.append(row.region))
+    assert rows == ["A", "B"]
+    assert [(row.region, row.state, row.panels) for row in summary.rows] == [("A", "made", 3), ("B", "none", None)]
+    assert summary.code == 2
+    assert {path.name for path in (tmp_path / "here").iterdir()} == {"A", "job.toml", "summary.csv", "summary.json"}
+    with pytest.raises(cp.SettingsError, match="at least 1 worker"):
+        cp.run_job(job, tmp_path / "here", workers=0)
+    with pytest.raises(cp.SettingsError, match="give one of the two"):
+        cp.run_job(job, tmp_path / "here", workers=2, scheduler="tcp://127.0.0.1:1")
 
 
 @pytest.mark.parametrize(

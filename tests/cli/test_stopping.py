@@ -61,6 +61,7 @@ KILL, HANG_UP = (signal.SIGTERM, 143, NOTHING), (signal.SIGHUP, 143, NOTHING)
         ),
     ],
 )
+@thorough
 def test_whoever_stops_it_finds_nothing_left(
     lip_step: Path,
     tmp_path: Path,
@@ -78,6 +79,28 @@ def test_whoever_stops_it_finds_nothing_left(
     lines = [line for line in err.splitlines() if not re.match(r"Fit |.*: at work for \d+ s$", line)]  # its rounds
     assert lines[-1:] == said
     assert list(tmp_path.iterdir()) == []
+
+
+INTERRUPTED_IN_AN_EXTENSION = """
+import ctypes, sys
+from cadpanel.cli import main as program
+
+def app(**_):
+    ctypes.pythonapi.PyRun_String.restype = ctypes.py_object
+    ctypes.pythonapi.PyRun_String(b"raise KeyboardInterrupt", 257, ctypes.py_object({}), ctypes.py_object({}))
+
+program.app = app
+sys.exit(program.main())
+"""
+
+
+@pytest.mark.skipif(sys.implementation.name != "cpython", reason="calls CPython's own library")
+def test_an_interrupt_inside_of_an_extension_ends_with_the_same_code(tmp_path: Path) -> None:
+    (tmp_path / "it.py").write_text(INTERRUPTED_IN_AN_EXTENSION, encoding="utf-8")
+    answer = subprocess.run(
+        [sys.executable, "-m", "it"], capture_output=True, text=True, timeout=60, cwd=tmp_path, check=False
+    )
+    assert (answer.returncode, answer.stderr) == (130, "Interrupted.\n")
 
 
 @contextmanager

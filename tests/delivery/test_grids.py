@@ -71,6 +71,7 @@ def tampered(report: ReportModel, **changes: object) -> ReportModel:
 
 
 @every_case
+@pytest.mark.each_value_once
 @pytest.mark.parametrize("change", ["another edge", "the other way round", "a narrower gap"])
 def test_a_seam_that_was_changed_in_the_report_is_named(tmp_path: Path, name: str, change: str) -> None:
     report = deliver(fitted(name), tmp_path / "out")

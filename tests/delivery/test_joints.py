@@ -37,7 +37,7 @@ from tests.joined_fits import FITS, bricks, cones, fitted
 from tests.known_panels import ring as known_ring
 from tests.known_panels import sampled
 from tests.shapes import folded_panel, moved
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 SHARED = 1e-6  # mm3 that the kernel may find in common of two solids that touch
 MEASURED = 1e-4  # mm by which the kernel's distance may be off
@@ -92,6 +92,7 @@ def test_joints_are_as_wide_as_asked_and_no_two_solids_share_volume(
 
 
 @pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
+@thorough
 def test_bricks_have_a_joint_at_every_part_of_a_side(
     tmp_path: Path, joint: float, thickness: float, skin_side: SkinSide
 ) -> None:

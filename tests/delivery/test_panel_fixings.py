@@ -63,6 +63,7 @@ def test_the_holes_of_solids_drawings_and_tables_are_those_of_the_report(folder:
         assert np.array(own) == pytest.approx(points, abs=1e-4)
 
 
+@thorough
 def test_a_hole_that_the_report_has_elsewhere_or_not_at_all_is_seen(folder: Path, report: ReportModel) -> None:
     panel = report.panels[0]
     hole = panel.fixings[0]

@@ -19,7 +19,7 @@ from cadpanel.delivery.verify import verify
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.sheet_checks import SkinSide
 from tests.joined_fits import FITS, fitted
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 CASES: list[tuple[float, float, SkinSide]] = [(10.0, 3.0, "outer"), (0.0, 20.0, "inner")]
 
@@ -52,6 +52,7 @@ def test_square_sheets_keep_the_joint_free_and_are_proved_so(
         assert apart >= joint - 1e-4
 
 
+@thorough
 def test_a_report_that_calls_bevelled_sheets_square_is_refused(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     report = deliver(fitted(next(iter(FITS))), folder)

@@ -20,6 +20,7 @@ from cadpanel.delivery.verify import verify
 from tests.joined_fits import FITS, cones, fitted
 
 
+@pytest.mark.each_value_once
 @pytest.mark.parametrize("name", [*FITS, "cones"])
 @pytest.mark.parametrize("thickness", [3.0, 20.0])
 def test_a_flat_part_has_the_area_that_the_kernel_finds_in_the_middle_of_the_sheet_that_is_cut_back(

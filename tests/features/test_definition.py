@@ -108,6 +108,11 @@ def test_a_chain_without_patches_or_with_too_many_is_refused(count):
         Feature(*count * [Cone()])
 
 
+@pytest.mark.parametrize("corners", [3, MOST_CORNERS])
+def test_a_polygon_has_as_many_corners_as_panels_may_have(corners: int) -> None:
+    assert Polygon(corners).corner_count == corners
+
+
 @pytest.mark.parametrize("corners", [2, MOST_CORNERS + 1])
 def test_a_polygon_with_too_few_or_too_many_corners_is_refused(corners):
     with pytest.raises(SettingsError, match=f"between 3 and {MOST_CORNERS} corners, not {corners}"):

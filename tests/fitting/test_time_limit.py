@@ -14,6 +14,7 @@ def lip() -> cp.Reference:
     return reference(Lip(panels=12, twist=(1.0, -1.0)))
 
 
+@pytest.mark.each_value_once
 @pytest.mark.parametrize("steps", [1, 2, 5, 12])
 @pytest.mark.parametrize("how", [{}, {"gap_tolerance": 0.01}, {"drift_along": 0.01, "drift_across": 0.005}])
 def test_whenever_it_is_told_to_end_every_limit_but_gaps_holds(steps, how):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cadpanel.geometry.biarcs import arc_chains, arc_circle, arc_contour_area
+from cadpanel.geometry.biarcs import arc_chains, arc_circle, arc_contour_area, off_arcs
 from cadpanel.geometry.flat_sizes import flat_sizes
 from cadpanel.geometry.unroll import unroll
 from tests.chains import CHAINS
@@ -91,3 +91,11 @@ def test_two_half_circles_enclose_a_disc():
     centre, radius = arc_circle(np.array([2.0, 0.0]), np.array([0.0, 2.0]), math.tan(math.pi / 8.0))
     assert centre == pytest.approx([0.0, 0.0], abs=1e-12)
     assert radius == pytest.approx(2.0)
+
+
+def test_distances_from_a_closed_chain_are_those_from_many_points_of_it():
+    vertices = np.array([[0.0, 0.0, 0.3], [100.0, 20.0, -0.5], [130.0, 120.0, 0.0], [10.0, 90.0, 0.8]])
+    near = drawn(vertices, vertices[0, :2], per_arc=4001)
+    places = np.random.default_rng(5).uniform(-80.0, 200.0, (300, 2))
+    wanted = np.linalg.norm(places[:, None] - near, axis=-1).min(axis=1)
+    assert off_arcs(vertices, places) == pytest.approx(wanted, abs=1e-3)

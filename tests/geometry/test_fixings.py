@@ -44,6 +44,15 @@ def test_a_straight_edge_has_evenly_spaced_holes_from_its_corners_on() -> None:
     assert found.short == ()
 
 
+def test_at_corners_the_holes_of_two_edges_are_as_near_to_each_other_as_holes_may_be() -> None:
+    pattern = unroll(folded_panel(chain="p", widths=(600.0,), turns=(0.0,), length=1000.0))
+    found = fixings(pattern, FixingRule(diameter=8.0, pitch=220.0, distance=11.0))
+    assert found.short == ()
+    places = np.array([hole.place for hole in found.holes])
+    apart = np.linalg.norm(places[:, None] - places, axis=-1) + 1e9 * np.eye(len(places))
+    assert np.sort(apart.min(axis=1))[:8] == pytest.approx(2.2 * 8.0)
+
+
 @pytest.mark.parametrize(("width", "holes"), [(70.0, 0), (73.0, 1), (85.0, 1), (92.0, 2)])
 def test_a_short_edge_has_one_hole_in_its_middle_or_none_and_says_so(width: float, holes: int) -> None:
     pattern = unroll(folded_panel(chain="p", widths=(width,), turns=(0.0,)))

@@ -34,3 +34,10 @@ def test_a_seam_that_bends_at_a_corner_goes_on_between_both_ways():
     assert found[0, 0] == pytest.approx([1.0, 0.0, 0.0])
     assert found[0, 1] == pytest.approx([1.0, 1.0, 0.0])
     assert found[0, 2] == pytest.approx([0.0, 1.0, 0.0])
+
+
+def test_of_points_round_a_circle_the_directions_are_those_of_its_tangents():
+    turns = np.linspace(0.0, 2.0, 9)
+    (found,) = tangents_at(np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])[None])
+    ways = found / np.linalg.norm(found, axis=-1, keepdims=True)
+    assert ways[1:-1] == pytest.approx(np.column_stack([-np.sin(turns), np.cos(turns), 0.0 * turns])[1:-1])

@@ -6,7 +6,7 @@ import pytest
 from cadpanel.geometry.end_curves import EndCurves, seam_gap
 from tests.dense_seam_gap import FINE, QUICK, dense_seam_gap
 from tests.seams import KINDS, chains, good
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 SEED = 20
 # Of each of the fifteen kinds: ten thousand seams together in a thorough run.
@@ -71,6 +71,7 @@ def test_the_dense_measure_knows_a_shift_and_a_turn():
 
 
 @pytest.mark.parametrize("kind", KINDS)
+@thorough
 def test_neither_order_nor_company_changes_what_is_found(kind):
     first, second = KINDS[kind](np.random.default_rng(SEED + 1), 12)
     together = np.array(seam_gap(first, second))

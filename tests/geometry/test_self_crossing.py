@@ -1,5 +1,7 @@
 """An end of the skin that runs into itself is found, and one that only turns far is not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -43,6 +45,16 @@ def test_the_polyline_runs_through_all_corners_in_the_plane_of_its_end(seed, cha
         np.testing.assert_allclose(points[[0, -1]], corners[[0, -1]], atol=1e-9)
         arcs = sum(isinstance(patch, ConePatch) for patch in shape.patches)
         assert len(points) == len(corners) + 7 * arcs
+
+
+@given(seed=st.integers(0, 10_000), chain=st.sampled_from(sorted(CHAINS)), lift=st.sampled_from([-2.0, 3.0]))
+def test_the_ends_of_a_square_sheets_faces_are_everywhere_as_far_apart_as_the_faces(seed, chain, lift):
+    shape = replace(random_panel(seed, chain=chain), square=True)
+    for end in (0, 1):
+        away = end_polyline(shape.offset(lift), end) - end_polyline(shape, end)
+        np.testing.assert_allclose(np.linalg.norm(away, axis=-1), abs(lift), rtol=1e-9)
+        # All to the same side.
+        assert (np.einsum("mx,mx->m", away[1:], away[:-1]) > 0.0).all()
 
 
 @pytest.mark.parametrize("part", [0.9, 1.1])

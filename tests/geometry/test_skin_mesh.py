@@ -35,8 +35,9 @@ def test_vertices_lie_on_the_skin_and_the_mesh_is_as_large_as_it(shape):
     assert np.linalg.norm(mesh.ways, axis=-1) == pytest.approx(1.0)
 
 
-def test_a_polygon_with_a_notch_is_filled_up_to_its_outline_and_no_farther():
-    outline = np.array([(0, 0), (4, 0), (4, 3), (2, 1), (0, 3)], dtype=np.float64)
+@pytest.mark.parametrize("tip", [(2, 1), (2, 2)], ids=["off every diagonal", "on a diagonal"])
+def test_a_polygon_with_a_notch_is_filled_up_to_its_outline_and_no_farther(tip):
+    outline = np.array([(0, 0), (4, 0), (4, 4), tip, (0, 4)], dtype=np.float64)
     shape = PolygonShape(
         name="notch",
         feature="polygon",

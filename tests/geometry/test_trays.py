@@ -85,4 +85,26 @@ def test_a_mesh_to_look_at_covers_the_whole_skin(edges: tuple[str, ...] | None) 
         out = np.cross(mesh.ways[:, 0], mesh.ways[:, 1])
         assert 0.5 * np.linalg.norm(turned, axis=-1).sum() == pytest.approx(level.area(), rel=5e-4)
         assert np.abs(np.linalg.norm(out, axis=-1) - 1.0).max() < 1e-12
+        away = np.linalg.norm(level.vertices()[:, None] - mesh.points, axis=-1)
+        assert away.min(axis=1).max() < 1e-9
+        assert away.min(axis=0).max() < 0.8 * np.linalg.norm(np.ptp(level.vertices(), axis=0))
         assert (np.einsum("fx,fx->f", turned, out[mesh.triangles[:, 0]]) > 0.0).all()
+
+
+def test_legs_that_face_each_other_come_as_near_as_two_sheets_and_no_nearer() -> None:
+    shape = flat((0.9,) * 4, scale=0.1)
+    fits, meets = 20.0, 75.0
+    while meets - fits > 1e-3:
+        length = 0.5 * (fits + meets)
+        rule = ReturnRule(length=length, inner_radius=2.5)
+        try:
+            made, fits = folded_tray(shape, ("edge 0", "edge 2"), rule, THICKNESS, "outer"), length
+        except PanelError:
+            meets = length
+    vertices = np.concatenate([made.offset(lift).vertices() for lift in (0.0, sheet_depth(THICKNESS, "outer"))])
+    near = []
+    for name in made.edges:
+        point, way = made.wall(name)
+        behind = (point - vertices) @ way
+        near.append(behind[behind > 1.5 * THICKNESS].min())
+    assert min(near) == pytest.approx(2.0 * THICKNESS, abs=0.01)

@@ -8,7 +8,7 @@ from cadpanel.jobs.engine.engine import Engine
 from cadpanel.jobs.engine.serial import Serial
 from cadpanel.jobs.read import read_job
 from cadpanel.jobs.results import Results
-from cadpanel.jobs.run import Part, Place, run_job
+from cadpanel.jobs.run import Part, Place, make_regions
 from cadpanel.jobs.summary import SummaryModel
 from cadpanel.jobs.task import task_of
 from fixtures.lips import Lip
@@ -40,7 +40,7 @@ def parts(path: Path) -> list[Part]:
 
 def made(path: Path, out: Path, results: Results | None = None, engine: Engine | None = None) -> SummaryModel:
     """Run a job."""
-    return run_job(parts(path), Place(out=out), lambda: engine or Serial(), results, lambda *_: None)
+    return make_regions(parts(path), Place(out=out), lambda: engine or Serial(), results, lambda *_: None)
 
 
 def files(folder: Path) -> dict[str, bytes]:

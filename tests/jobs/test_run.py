@@ -13,7 +13,7 @@ from cadpanel.jobs.archive import packed
 from cadpanel.jobs.engine.engine import TellOf
 from cadpanel.jobs.engine.serial import Serial
 from cadpanel.jobs.results import Results
-from cadpanel.jobs.run import Place, run_job
+from cadpanel.jobs.run import Place, make_regions
 from cadpanel.jobs.summary import read_summary
 from cadpanel.jobs.task import Task
 from cadpanel.jobs.work import FAILED, MET, Made
@@ -98,8 +98,8 @@ def test_changing_one_region_makes_that_one_again(strip: Path, source: Path, tmp
     changed = parts(job(strip, THREE.replace("seed = 1", "seed = 9")))
     engine = Counting(source)
     with pytest.raises(DeliveryError, match=r"B' exists already"):
-        run_job(changed, Place(out=out), lambda: engine, None, lambda *_: None)
-    summary = run_job(changed, Place(out=out, overwrite=True), lambda: engine, None, lambda *_: None)
+        make_regions(changed, Place(out=out), lambda: engine, None, lambda *_: None)
+    summary = make_regions(changed, Place(out=out, overwrite=True), lambda: engine, None, lambda *_: None)
     assert (engine.worked, [row.state for row in summary.rows]) == (["B"], ["there", "made", "there"])
 
 
@@ -125,9 +125,9 @@ def test_fresh_ignores_what_was_made_before_and_asks_before_it_replaces(
         made(path, tmp_path / "out", results, engine)
         place = Place(out=tmp_path / "out", fresh=True)
         with pytest.raises(DeliveryError, match="exists already"):
-            run_job(parts(path), place, lambda: engine, results, lambda *_: None)
+            make_regions(parts(path), place, lambda: engine, results, lambda *_: None)
         place = Place(out=tmp_path / "out", fresh=True, overwrite=True)
-        run_job(parts(path), place, lambda: engine, results, lambda *_: None)
+        make_regions(parts(path), place, lambda: engine, results, lambda *_: None)
         made(path, tmp_path / "kept", results, engine)
     assert engine.worked == ["A", "A"]
 
@@ -141,7 +141,7 @@ def test_a_changed_file_is_nothing_that_stands_there_and_is_not_replaced(
     with pytest.raises(DeliveryError, match="exists already"):
         made(path, out, None, Counting(source))
     with pytest.raises(DeliveryError, match="was changed since"):
-        run_job(parts(path), Place(out=out, overwrite=True), Serial, None, lambda *_: None)
+        make_regions(parts(path), Place(out=out, overwrite=True), Serial, None, lambda *_: None)
 
 
 def test_a_folder_of_something_else_is_left_alone(strip: Path, done: Path, tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from tests.reference_shapes import (
     strip,
     tile,
 )
+from tests.thorough import thorough
 
 SADDLE = sheet_of(lambda x, y: 900.0 * (x - 0.5) ** 2 - 1200.0 * (y - 0.4) ** 2, 12_000.0, 12_000.0)
 FOLD = Lip(length=4000.0, twist=3.0, taper=0.05)
@@ -192,6 +193,7 @@ def is_sound(polygon):
 
 @given(seed=st.integers(0, 10_000))
 @settings(max_examples=40, deadline=None)
+@thorough
 def test_parts_of_one_plate_cover_nothing_however_it_is_cut(seed):
     random = np.random.default_rng(seed)
     parts = [np.array([[0.0, 0.0], [20_000.0, 0.0], [20_000.0, 9000.0], [0.0, 9000.0]])]

@@ -14,6 +14,7 @@ from cadpanel.solver.ended import Limits
 from cadpanel.solver.hold import Hold
 from cadpanel.solver.interior_point import interior_point
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points, side_by_side
+from tests.thorough import thorough
 
 few = settings(max_examples=10)
 seeds = st.integers(0, 2**32 - 1)
@@ -150,6 +151,7 @@ def test_wider_distances_are_those_of_what_gives_way_alone():
 
 @few
 @given(seed=seeds)
+@thorough
 def test_each_component_goes_the_way_that_it_goes_alone(seed):
     """Straight chains and chains that bend far, long and short ones, with their own distances."""
     random = np.random.default_rng(seed)

@@ -96,6 +96,22 @@ def test_a_component_that_begins_at_its_minimum_stays_there():
     assert solution.unknowns[1] == pytest.approx([1.0, 1.0], abs=1e-8)
 
 
+def test_at_a_cost_of_zero_there_is_nothing_to_gain_and_no_step_fails(monkeypatch):
+    told = []
+    damp = Nielsen.after
+
+    def noted(rule, mu, growth, gain, failed):
+        told.append((float(gain[0]), bool(failed[0])))
+        return damp(rule, mu, growth, gain, failed)
+
+    monkeypatch.setattr(Nielsen, "after", noted)
+    start = np.array([[1.0, 1.0]])
+    solution = levenberg_marquardt(side_by_side(rosenbrock, rosenbrock_jacobian, start), start, TIGHT)
+    assert solution.converged.all()
+    assert set(told) <= {(1.0, False)}
+    assert told
+
+
 def test_an_unknown_that_no_residual_sees_stays_where_it_was():
     def blind(u):
         return np.array([u[0] - 3.0])

@@ -46,6 +46,7 @@ def test_no_settings_and_weights_make_no_study():
         trade_off([strip], [FitSettings(weights=Weights())])
 
 
+@thorough
 def test_two_gaps_make_no_knee():
     assert not any(point.knee for point in study())
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from cadpanel.arrays import Array
+from cadpanel.errors import SettingsError
 from cadpanel.features.feature import Feature
 from cadpanel.fitting.automatic import offenders
 from cadpanel.fitting.measures.fit import Measures
@@ -19,6 +20,7 @@ from cadpanel.fitting.methods.weighted import weighted_objective
 from cadpanel.fitting.result import FitResult
 from cadpanel.fitting.settings import FitSettings, Weights
 from cadpanel.fitting.shapes import panel_shapes
+from cadpanel.setting import options_of
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong, DriftTerm
 from cadpanel.terms.limits.flange_width import FlangeWidth, WidthTerm
@@ -128,7 +130,7 @@ def broken(limit: Limit, by: float) -> tuple[dict[str, float], float]:
 @pytest.mark.parametrize("limit", ASKED, ids=lambda limit: limit.name)
 def test_a_limit_that_is_just_kept_is_kept_and_one_that_is_just_broken_is_told(limit: Limit) -> None:
     result = measured_result()
-    for by, kept in ((-1e-6, True), (1e-3, False)):
+    for by, kept in ((-1e-6, True), (0.0, True), (1e-3, False)):
         allowed, worst = broken(limit, by)
         how = replace(result.settings, **cast("dict[str, Any]", allowed))
         assert keeps_limits(result.measures, how) is kept
@@ -214,3 +216,16 @@ def test_measures_are_what_limits_look_at() -> None:
     result: FitResult = fitted()
     measures: Measures = result.measures
     assert measures.shapes == result.shapes
+
+
+@pytest.mark.parametrize("limit", [limit for limit in LIMITS if limit.percent], ids=lambda limit: limit.name)
+def test_shares_of_a_length_are_asked_for_in_percent_within_the_limits_own_range(limit: Limit) -> None:
+    (option,) = (option for one, option in options_of(FitSettings) if one.name == limit.name)
+    assert option.read is not None
+    assert option.show is not None
+    for share in (limit.least, 0.07, limit.most):
+        assert option.read("--it", 100.0 * share) == pytest.approx(share, rel=1e-15)
+        assert option.show(share) == pytest.approx(100.0 * share, rel=1e-12)
+    for share in (0.99 * limit.least, 1.01 * limit.most):
+        with pytest.raises(SettingsError, match=r"--it must be between 0\.01 and 50 percent of the panel's length"):
+            option.read("--it", 100.0 * share)

@@ -8,6 +8,7 @@ from cadpanel.brep.building.meshing import triangles_of
 from cadpanel.brep.building.sheet import build_solid, volume_of
 from cadpanel.geometry.triangles import is_closed, merged
 from tests.shapes import CHAINS, random_panel
+from tests.thorough import thorough
 
 
 @pytest.mark.parametrize("chain", sorted(CHAINS))
@@ -30,6 +31,7 @@ def test_a_solid_as_triangles_is_closed_and_has_its_volume_within_the_chord(chai
     assert errors[1] <= errors[0] + 1e-6 * volume
 
 
+@thorough
 def test_the_solid_is_left_as_it_was():
     solid = build_solid(random_panel(5), 3.0)
     coarse = len(triangles_of(solid, 1.0).corners)

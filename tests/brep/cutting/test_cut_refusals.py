@@ -22,7 +22,7 @@ from cadpanel.errors import CadpanelError, OutlineError, PanelError, ReferenceFi
 from tests.cuts import reference_of
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 STRAIGHT = Lip(length=9000.0, twist=0.0, taper=0.0)
 RADIUS = 700.0
@@ -184,6 +184,7 @@ def test_a_spine_that_goes_all_round_is_refused(tmp_path, turn, sentence):
 
 
 @pytest.mark.parametrize("face", cases([TUBE], [BALL, TUBE, TORUS]))
+@thorough
 def test_planes_that_leave_rings_are_refused_with_another_way_to_cut(tmp_path, face):
     line = spine(tmp_path, (0.0, 0.0, -RADIUS), (0.0, 0.0, 6000.0))
     with pytest.raises(OutlineError, match=r"Panel 'S1-01': .*: a grid of 3x2 cuts it\.$"):

@@ -10,7 +10,7 @@ from cadpanel.brep.faces.face_patch import lengths_along
 from tests.cuts import assert_covers, model_of, panels_of, reference_of, surface_of
 from tests.known_faces import face_on, flat
 from tests.reference_shapes import kernel_face
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 
 def sheet(x, width, length=4000.0, bend=0.0):
@@ -27,6 +27,7 @@ def sheet(x, width, length=4000.0, bend=0.0):
 @pytest.mark.parametrize(
     "size", cases([(501.0, 799.0)], [(500.0, 800.0), (501.0, 799.0), (250.0, 5000.0), (3000.0, 300.0)])
 )
+@thorough
 def test_panels_are_the_fewest_of_which_none_is_larger_either_way(size, by):
     face = sheet(0.0, 1500.0, bend=900.0)
     ((u, v),) = counts_within(surface_of(face), size, by, "roof.step")

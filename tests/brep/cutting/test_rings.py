@@ -17,6 +17,7 @@ from cadpanel.brep.splitting.splitter import area_of
 from cadpanel.errors import ReferenceFileError
 from tests.cuts import assert_covers, middle, model_of, panels_of, reference_of
 from tests.reference_shapes import kernel_face, ring
+from tests.thorough import thorough
 
 RADIUS, HEIGHT = 2000.0, 800.0
 
@@ -143,6 +144,7 @@ def test_a_ring_of_several_rows_is_divided_round_into_equal_panels(tmp_path, sta
 
 @given(order=st.permutations(range(9)), flips=st.lists(st.booleans(), min_size=9, max_size=9))
 @settings(max_examples=6, deadline=None)
+@thorough
 def test_order_and_side_of_the_faces_of_rows_change_nothing(order, flips):
     faces = rows(*[(0.0, 0.1, 0.7)] * 3)
     turned = [faces[index].Reversed() if flips[index] else faces[index] for index in order]

@@ -19,6 +19,7 @@ from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.rhino_breps import Tube
 from tests.rhino_files import bent_surface, file_in, off_border, rhino, written
+from tests.thorough import thorough
 
 pytestmark = pytest.mark.each_value_once
 
@@ -62,6 +63,7 @@ def test_face_with_a_seam_has_its_trims_whichever_way_its_surface_closes(tmp_pat
 
 @pytest.mark.parametrize(("apex", "round_v"), WAYS_ROUND)
 @pytest.mark.parametrize("where", PLACES)
+@thorough
 def test_face_with_a_seam_keeps_its_trims_in_a_block(tmp_path, apex, round_v, where):
     tube, (linear, factor), place = Tube(apex=apex, round_v=round_v), PLACES[where], rhino.Transform(1.0)
     for row in range(3):

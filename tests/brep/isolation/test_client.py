@@ -20,6 +20,7 @@ from cadpanel.reference.settings import ReferenceSettings
 from tests.drawn import curve
 from tests.model_files import strip_faces, write_shape
 from tests.reference_shapes import Lip
+from tests.thorough import thorough
 
 pytestmark = pytest.mark.usefixtures("forked_readers")
 
@@ -96,14 +97,14 @@ time.sleep(60)
 @pytest.mark.parametrize(
     ("stages", "sentence"),
     [
-        (0, r"'model.brep' keeps the CAD kernel busy for more than 2 s: it is damaged or far too large"),
-        (1, r"'lines.brep' keeps the CAD kernel busy for more than 2 s: it is damaged or far too large"),
-        (2, r"'model.brep' keeps the CAD kernel busy for more than 3 s: repair it where it was modelled"),
+        (0, r"'model.brep' keeps the CAD kernel busy for more than 1 s: it is damaged or far too large"),
+        (1, r"'lines.brep' keeps the CAD kernel busy for more than 1 s: it is damaged or far too large"),
+        (2, r"'model.brep' keeps the CAD kernel busy for more than 1 s: repair it where it was modelled"),
     ],
 )
 def test_each_file_and_the_work_have_a_time_of_their_own(model, lines, other_server, monkeypatch, stages, sentence):
-    monkeypatch.setattr(requests, "SECONDS_TO_READ", 2.0)
-    monkeypatch.setattr(requests, "SECONDS_TO_WORK", 3.0)
+    monkeypatch.setattr(requests, "SECONDS_TO_READ", 1.0)
+    monkeypatch.setattr(requests, "SECONDS_TO_WORK", 1.0)
     other_server(SLOW.format(stages=stages))
     with pytest.raises(ReferenceFileError, match=sentence):
         read_raw_panels(model, ReferenceSettings(unit="mm", network=lines))
@@ -163,6 +164,7 @@ def test_the_system_that_counts_no_time_leaves_it_to_a_watchdog():
     assert time_limit.COUNTED_BY_SYSTEM or os.name == "nt"
 
 
+@thorough
 def test_frames_longer_than_a_pipe_holds_go_both_ways(model):
     # The name of the file stands in every note.
     path = write_shape(model.with_name(f"{'many' * 50}.brep"), compound_of(strip_faces(Lip()) * 100))

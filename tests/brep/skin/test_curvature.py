@@ -8,7 +8,7 @@ from OCP.Geom import Geom_Plane, Geom_SphericalSurface, Geom_ToroidalSurface
 from OCP.gp import gp_Ax3, gp_Dir, gp_Pln, gp_Pnt
 
 from cadpanel.brep.kernel.transforms import shifted
-from cadpanel.brep.skin.curvature import DEVELOPABLE, FLAT, curvature_of
+from cadpanel.brep.skin.curvature import DEVELOPABLE, FLAT, bending_of, curvature_of
 from tests.cuts import surface_of
 from tests.known_faces import arc_face, disc_on, face_on, graph_surface
 
@@ -95,6 +95,32 @@ def test_the_smallest_radius_is_that_of_the_larger_principal_curvature(first, se
     face = face_on(graph_surface(height, (-20.0, -20.0 - 20.0 * shear), (40.0, 40.0 * shear), (0.0, 40.0)))
     sharpest = np.abs(np.linalg.eigvalsh(hessian)).max()
     assert measured(face).smallest_radius == pytest.approx(1.0 / sharpest, rel=1e-3)
+
+
+@pytest.mark.parametrize("shear", [0.0, 0.7])
+def test_the_normal_turns_as_it_differs_between_neighbouring_points(shear):
+    """On a saddle whose parameter lines are not square to each other, on ways that lie along neither of them."""
+    hessian = np.array([[8.0, 3.0], [3.0, -5.0]]) * 1e-4
+
+    def height(x, y):
+        return 0.5 * (hessian[0, 0] * x * x + hessian[1, 1] * y * y) + hessian[0, 1] * x * y
+
+    def normals(places):
+        """Of z = f(x, y), upwards."""
+        up = np.column_stack([-places @ hessian, np.ones(len(places))])
+        return up / np.linalg.norm(up, axis=-1, keepdims=True)
+
+    (face,) = surface_of(
+        face_on(graph_surface(height, (-300.0, -200.0), (900.0, 900.0 * shear), (-200.0, 700.0)))
+    ).faces
+    bent = bending_of(face.patch, 5)
+    up = np.sign(bent.normals[:, 2:])
+    assert bent.normals == pytest.approx(up * normals(bent.points[:, :2]), abs=1e-6)
+    for parts in ((1.0, 0.0), (0.0, 1.0), (0.7, -1.3)):
+        ways = sum(part * along for part, along in zip(parts, bent.along, strict=True))
+        ways /= np.linalg.norm(ways, axis=-1, keepdims=True)
+        ahead, behind = (normals(bent.points[:, :2] + way * ways[:, :2]) for way in (0.5, -0.5))
+        assert bent.turn(ways) == pytest.approx(up * (ahead - behind), rel=1e-3, abs=1e-8)
 
 
 def test_a_trimmed_face_counts_what_lies_within_its_border():

@@ -17,6 +17,7 @@ from cadpanel.errors import ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 from tests.known_faces import RADIUS, disc, spline_plane
 from tests.model_files import write_shape
+from tests.thorough import cases
 
 pytestmark = pytest.mark.each_value_once
 
@@ -58,7 +59,7 @@ def chord(patch, start, stop):
     return edge
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", cases(range(4), range(12)))
 @pytest.mark.parametrize("turned", [False, True], ids=["forward", "reversed"])
 def test_chords_leave_the_pieces_that_the_kernel_finds_the_slow_way(seed, turned):
     random = np.random.default_rng(seed)

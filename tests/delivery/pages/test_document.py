@@ -17,6 +17,7 @@ from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import DeliveryError
 from tests.delivered import fitted
+from tests.thorough import thorough
 
 SHOP = ShopSettings(outputs="pdf", mesh_chord=5.0, material="EN AW-5754", author="N. N.", fixings=(6.5, 450.0, 40.0))
 
@@ -62,6 +63,7 @@ def test_the_same_delivery_gives_the_same_bytes_at_the_same_date(
     assert "2023-11-14" in page_texts(tmp_path / "one" / DRAWINGS)[1]
 
 
+@thorough
 def test_what_is_not_the_reports_is_told(delivery: tuple[Path, ReportModel], tmp_path: Path) -> None:
     out, _ = delivery
     whole = (out / DRAWINGS).read_bytes()

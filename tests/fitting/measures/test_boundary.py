@@ -17,6 +17,7 @@ from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone, end_curve, renumbered, ring
 from tests.known_panels import moved as moved_reference
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
+from tests.thorough import thorough
 
 pytestmark = pytest.mark.each_value_once
 
@@ -217,6 +218,7 @@ def test_what_is_not_looked_at_is_nowhere_the_farthest(case):
 
 
 @every_boundary
+@thorough
 def test_the_farthest_is_as_far_as_curves_followed_densely_are(case):
     shapes, reference = BOUNDARIES[case]()
     skins = off(shapes, 5)[:8]

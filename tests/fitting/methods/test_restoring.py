@@ -10,6 +10,7 @@ from cadpanel.fitting.settings import FitSettings
 from fixtures.arrays import reference
 from fixtures.lips import Lip
 from tests.known_panels import posed
+from tests.thorough import thorough
 
 TWISTED = Lip(panels=3, panel_length=600.0, twist=(7.0, -9.0), plan=(4.0, -3.0), radius=(200.0, 350.0))
 FIRM = FitSettings(tilt="fixed", min_radius=150.0, drift_across=0.005, drift_along=0.01, seam_turn=90.0, evenness=0.5)
@@ -45,6 +46,7 @@ def test_panels_that_are_not_named_stay_where_the_first_start_has_them(case):
     assert found[1] == pytest.approx(whole[1], abs=1e-9)
 
 
+@thorough
 def test_another_start_never_makes_it_deviate_more(case):
     problem, local, starts = case
 

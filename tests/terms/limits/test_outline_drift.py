@@ -11,7 +11,7 @@ from cadpanel.fitting.measures.free_outline import outline_drift
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.free_edges import free_edges
-from cadpanel.terms.limits.outline_drift import OutlineTerm
+from cadpanel.terms.limits.outline_drift import DriftOutline, OutlineTerm
 from tests.delivered import fitted, strip
 from tests.known_panels import posed
 from tests.terms.models import DIFFERENCES, STEP
@@ -54,6 +54,16 @@ def test_the_line_is_held_where_corners_alone_would_leave_it() -> None:
     assert held.tolerance_met
     assert (held.measures.outline_drift <= allowed).all()
     assert held.prices["drift_outline"] > 0.0
+
+
+def test_it_is_held_within_its_share_less_a_margin_and_not_at_all_at_the_most() -> None:
+    problem, _ = posed(strip(), FitSettings())
+    held = [
+        DriftOutline().held(problem, {"drift_outline": share}, margin) for share, margin in ((0.02, 0.0), (0.02, 0.1))
+    ]
+    (plain,), (less,) = held
+    assert less.hold.radius == pytest.approx(0.9 * plain.hold.radius, rel=1e-15)
+    assert DriftOutline().held(problem, {"drift_outline": DriftOutline.most}, 0.0) == []
 
 
 def test_panels_without_free_edges_have_no_drift_of_the_outline() -> None:

@@ -27,16 +27,16 @@ from cadpanel.errors import (
 )
 
 if TYPE_CHECKING:
-    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, unroll, write_step
+    from cadpanel.api import compare, deliver, fit, inspect, read, to_build123d, to_cadquery, write_step
     from cadpanel.api_job import run_job
     from cadpanel.api_loft import deliver_loft, rails
     from cadpanel.api_result import FitResult
+    from cadpanel.api_shapes import build_skin, build_solid, unroll
     from cadpanel.api_studies import fewest_panels, study
     from cadpanel.atomic.cone import fit_cone
     from cadpanel.atomic.cylinder import fit_cylinder
     from cadpanel.atomic.plane import fit_plane
     from cadpanel.atomic.result import ConeFit, CylinderFit, PlaneFit
-    from cadpanel.brep.building.sheet import build_skin, build_solid
     from cadpanel.brep.survey import Survey
     from cadpanel.delivery.assemble import assemble
     from cadpanel.delivery.diff import diff
@@ -115,12 +115,12 @@ __all__ = [
 
 if not TYPE_CHECKING:  # type checkers see the imports above, and so know what is not there
     _HOMES = {
-        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "unroll", "write_step"),
+        "api": ("compare", "deliver", "fit", "inspect", "read", "to_build123d", "to_cadquery", "write_step"),
         "api_job": ("run_job",),
         "api_loft": ("deliver_loft", "rails"),
         "api_result": ("FitResult",),
+        "api_shapes": ("build_skin", "build_solid", "unroll"),
         "api_studies": ("fewest_panels", "study"),
-        "brep.building.sheet": ("build_skin", "build_solid"),
         "brep.survey": ("Survey",),
         "delivery.assemble": ("assemble",),
         "delivery.diff": ("diff",),

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast, overload
 
 from cadpanel import api_result
-from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords
+from cadpanel.api_keywords import MadeKeywords, SheetKeywords, check_keywords, spells_keywords
 from cadpanel.api_sheets import Panels, build_sheets, shapes_of, title_of
 from cadpanel.delivery.settings import Ends, Schema
 from cadpanel.delivery.shop_settings import ShopKeywords
@@ -23,12 +23,9 @@ from cadpanel.fitting.run import fit as fit_reference
 from cadpanel.fitting.settings import LIKE_THE_PAPER, FitKeywords, FitSettings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import SkinSide
-from cadpanel.geometry.unroll import FlatPattern, neutral_offset
-from cadpanel.geometry.unroll import unroll as unroll_shape
 from cadpanel.kinds import checked
 from cadpanel.reference.model import Reference
 from cadpanel.reference.settings import ReferenceKeywords, ReferenceSettings
-from cadpanel.setting import require
 
 if TYPE_CHECKING:
     import build123d
@@ -42,6 +39,7 @@ if TYPE_CHECKING:
 
 
 @checked
+@spells_keywords("read")
 def read(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Reference:
@@ -63,6 +61,7 @@ def read(
 
 
 @checked
+@spells_keywords("read")
 def inspect(
     path: str | Path, settings: ReferenceSettings | None = None, **changes: Unpack[ReferenceKeywords]
 ) -> Survey:
@@ -95,6 +94,7 @@ def _asked(settings: FitSettings | None, changes: FitKeywords) -> FitSettings:
 
 
 @checked
+@spells_keywords("fit")
 def fit(
     reference: Reference | str | Path,
     settings: FitSettings | None = None,
@@ -134,8 +134,9 @@ def fit(
 
 
 @checked
+@spells_keywords("fit")
 def compare(
-    reference: Reference,
+    reference: Reference | str | Path,
     settings: FitSettings | None = None,
     *,
     out: str | Path | None = None,
@@ -146,7 +147,7 @@ def compare(
     """Fit a reference four ways: two-stage and concurrent, with cylinders and with cones.
 
     Args:
-        reference: what is to be approximated.
+        reference: what is to be approximated: as `read` gives it, or a file that is read as it is.
         settings: tolerance, limits, tilt and restarts; feature and method are those of the four columns.
         out: folder for compare.json, written whole or not at all; None to write nothing.
         overwrite: replace what cadpanel wrote there before.
@@ -154,6 +155,7 @@ def compare(
         changes: settings to change.
 
     Raises:
+        ReferenceFileError: a file cannot be read, or does not hold panels.
         PanelError: a panel's faces are nothing that a feature could approximate.
         SettingsError: a setting is out of its range.
         DeliveryError: the folder is refused or cannot be written.
@@ -165,16 +167,19 @@ def compare(
     from cadpanel.delivery.records.table1 import comparison_record
     from cadpanel.studies.table1 import compare as compare_reference
 
-    how = with_earlier(_asked(settings or LIKE_THE_PAPER, changes), reference)
+    asked = _asked(settings or LIKE_THE_PAPER, changes)
+    read_in = reference if isinstance(reference, Reference) else read(reference)
+    how = with_earlier(asked, read_in)
     # Refused before the fits, which take their time.
     with nullcontext() if out is None else delivery_folder(Path(out), overwrite=overwrite) as folder:
-        comparison = comparison_record(reference, how, compare_reference(reference, how, progress=progress))
+        comparison = comparison_record(read_in, how, compare_reference(read_in, how, progress=progress))
         if folder is not None:
             write_comparison(comparison, folder / COMPARISON)
     return comparison
 
 
 @checked
+@spells_keywords("deliver")
 def deliver(
     result: FitResult,
     out: str | Path,
@@ -219,30 +224,6 @@ def deliver(
     check_keywords("deliver", shop)
     asked = ShopSettings(**cast("dict[str, Any]", shop))
     return deliver_result(result, Path(out), sheet, asked, overwrite=overwrite, progress=progress)
-
-
-@checked
-def unroll(
-    shape: Panel, *, thickness: float = 3.0, skin_side: SkinSide = "outer", k_factor: float = 0.5
-) -> FlatPattern:
-    """One panel as a flat sheet seen from outside: outline, tangent lines and rulings, exactly.
-
-    Args:
-        shape: one of a result's shapes, which is unrolled whole: nothing is cut off it for joints.
-        thickness: of the sheet, mm.
-        skin_side: "outer" or "inner".
-        k_factor: distance of the surface that keeps its lengths from the inner face of the bends, as a share of the
-            thickness; flat panels have the middle of the sheet with 0.5.
-
-    Raises:
-        PanelError: the panel bends both ways, and the K-factor is not 0.5.
-        SettingsError: the thickness, side or K-factor is none.
-    """
-    from cadpanel.delivery.settings import SheetSettings
-
-    sheet = SheetSettings(thickness=thickness, skin_side=skin_side)
-    require("K-factor", k_factor, least=0.0, most=1.0)
-    return unroll_shape(shape, neutral_offset(shape, sheet.thickness, sheet.skin_side, k_factor))
 
 
 @checked

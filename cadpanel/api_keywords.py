@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import inspect
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields
-from typing import TypedDict
+from typing import Any, TypedDict, TypeVar
 
 from cadpanel.delivery.settings import Ends, Schema, SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -13,6 +15,10 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.near import near_names
 from cadpanel.reference.settings import ReferenceSettings
+from cadpanel.setting import options_of
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+_WIDTH = 120
 
 
 class MadeKeywords(TypedDict, total=False):
@@ -76,3 +82,28 @@ def check_made(given: Iterable[str]) -> None:
     for keyword in given:
         if keyword not in MadeKeywords.__annotations__:
             raise SettingsError(f"sheets are made by no setting '{keyword}'; {near_names(keyword, known)}")
+
+
+def spells_keywords(step: str) -> Callable[[Function], Function]:
+    """Spell out at the end of a function's docstring the keywords of a step, each with its default and its meaning.
+
+    Args:
+        step: "read", "fit" or "deliver".
+    """
+
+    def spelled(function: Function) -> Function:
+        named = inspect.signature(function).parameters
+        lines = [
+            f"{field.name}={field.default!r}: {option.help}"
+            for kind in _SETTINGS[step]
+            for field, option in options_of(kind)
+            if field.name not in named
+        ]
+        filled = (
+            textwrap.fill(line, _WIDTH, initial_indent=8 * " ", subsequent_indent=12 * " ", break_on_hyphens=False)
+            for line in lines
+        )
+        function.__doc__ = "\n".join([f"{(function.__doc__ or '').rstrip()}\n", "    Keywords:", *filled, "    "])
+        return function
+
+    return spelled

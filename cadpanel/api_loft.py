@@ -41,7 +41,7 @@ def rails(path: str | Path, *names: str, **changes: Unpack[ReferenceKeywords]) -
 
 @checked
 def deliver_loft(loft: Loft, out: str | Path, *, max_warp: float = 1.0, overwrite: bool = False) -> LoftModel:
-    """Write a loft into a folder, whole or not at all: loft.step, loft.dxf, loft.json, loft.png.
+    """Write a loft into a folder, whole or not at all: loft.step, loft.dxf, loft.FCStd, loft.json, loft.png.
 
     Args:
         loft: the surface.

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, cast
 
-from cadpanel.api_keywords import check_keywords
+from cadpanel.api_keywords import check_keywords, spells_keywords
 from cadpanel.api_result import FitResult, Study
 from cadpanel.errors import SettingsError
 from cadpanel.features.rulings import PanelFeature
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 
 @checked
+@spells_keywords("fit")
 def study(
     reference: Reference | str | Path,
     *,
@@ -94,6 +95,7 @@ def _same(reference: Reference) -> Reference:
 
 
 @checked
+@spells_keywords("fit")
 def fewest_panels(
     path: str | Path,
     settings: FitSettings | None = None,

@@ -70,3 +70,23 @@ def off_torse(points):
     t = np.unwrap(np.arctan2(points[:, 1], points[:, 0])) - np.arctan2(reach / c, 1.0)
     found = helix(t) + reach[:, None] * helix_way(t)
     return np.abs(found[:, 2] - points[:, 2])
+
+
+def torse_samples(first=0.2, last=1.0, count=40):
+    """Points, normals and weights on the tangent surface of the helix, and the way of its middle ruling."""
+    t, reach = (grid.ravel() for grid in np.meshgrid(np.linspace(first, last, count), np.linspace(200.0, 600.0, 9)))
+    way = helix_way(t)
+    inwards = np.stack([-np.cos(t), -np.sin(t), 0.0 * t], axis=-1)
+    normals = np.cross(way, inwards)
+    normals = normals / np.linalg.norm(normals, axis=-1)[:, None]
+    return helix(t) + reach[:, None] * way, normals, reach, helix_way(np.array([0.5 * (first + last)]))[0]
+
+
+def cone_samples(slope=0.2, first=-0.6, last=0.8, count=40):
+    """The same on the cone of apex (0, 0, 100 / slope) and radius 100 at z = 0; a cylinder where the slope is 0."""
+    u, z = (grid.ravel() for grid in np.meshgrid(np.linspace(first, last, count), np.linspace(0.0, 300.0, 9)))
+    radius = 100.0 - slope * z
+    out = np.stack([np.cos(u), np.sin(u), 0.0 * u], axis=-1)
+    normals = (out + np.array([0.0, 0.0, slope])) / np.hypot(1.0, slope)
+    points = radius[:, None] * out + z[:, None] * np.array([0.0, 0.0, 1.0])
+    return points, normals, radius, np.array([0.0, 0.0, 1.0])

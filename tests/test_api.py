@@ -143,7 +143,7 @@ def test_a_thickness_that_is_no_number_is_refused(thickness: object) -> None:
             "must be FitSettings or None, not {'seed': 1}",
         ),
         (lambda _: cp.fit(cast(Any, None)), "must be Reference or a path, not None"),
-        (lambda _: cp.compare(cast(Any, None)), r"of compare\(\) must be Reference, not None"),
+        (lambda _: cp.compare(cast(Any, None)), r"of compare\(\) must be Reference or a path, not None"),
         (
             lambda _: cp.read("a.step", cast(Any, cp.FitSettings())),
             "must be ReferenceSettings or None, not FitSettings",

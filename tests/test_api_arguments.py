@@ -74,7 +74,7 @@ MADE = ("to_cadquery", "to_build123d", "write_step")
 WORK = (
     "cadpanel.api.fit_reference",
     "cadpanel.api_job.read_job",
-    "cadpanel.api.unroll_shape",
+    "cadpanel.api_shapes.unroll_all",
     "cadpanel.brep.read.read_reference",
     "cadpanel.brep.survey.survey",
     "cadpanel.studies.table1.compare",

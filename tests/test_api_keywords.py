@@ -1,11 +1,14 @@
 """A keyword that a step does not know is refused with the one that was meant, or the step that knows it."""
 
+from dataclasses import fields
+from inspect import signature
 from typing import Any
 
 import pytest
 
 import cadpanel as cp
 from cadpanel.api_keywords import check_keywords
+from cadpanel.delivery.shop_settings import ShopSettings
 from tests.delivered import fitted, strip
 
 
@@ -49,3 +52,24 @@ def test_a_file_is_fitted_as_it_is_read(monkeypatch):
     assert found.measures.overall_rms == fitted().measures.overall_rms
     with pytest.raises(cp.SettingsError, match=r"'reference' of fit\(\) must be Reference or a path, not 7"):
         cp.fit(7)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("function", "settings"),
+    [
+        (cp.read, cp.ReferenceSettings),
+        (cp.fit, cp.FitSettings),
+        (cp.study, cp.FitSettings),
+        (cp.deliver, ShopSettings),
+    ],
+)
+def test_docstrings_spell_out_every_keyword_with_its_default(function, settings):
+    told = function.__doc__.partition("Keywords:")[2].split()
+    named = signature(function).parameters
+    spelled = {word.partition("=")[0] for word in told if "=" in word}
+    assert {one.name for one in fields(settings) if one.name not in named} <= spelled
+    assert all(len(line) <= 120 for line in function.__doc__.splitlines())
+
+
+def test_a_default_stands_with_its_meaning():
+    assert "seam_turn=3.0: How far seams may turn from the drawn ones." in str(cp.fit.__doc__)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from cadpanel.cli.steps import steps
 from cadpanel.errors import SettingsError
 
 DIFFERENT = 1
@@ -33,7 +34,9 @@ def diff(
     from cadpanel.delivery.schedule.csv_text import csv_bytes
     from cadpanel.delivery.schedule.difference_rows import difference_rows
 
-    found = diff_deliveries(before, now, tolerance=tolerance)
+    with steps(quiet=False) as shown:
+        shown.begin("Read and compare", now.name)
+        found = diff_deliveries(before, now, tolerance=tolerance)
     if as_json:
         typer.echo(found.model_dump_json(by_alias=True, indent=1))
     elif as_csv:

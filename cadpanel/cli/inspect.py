@@ -12,6 +12,7 @@ import typer
 from cadpanel.brep.files.text_check import require_files
 from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
+from cadpanel.cli.steps import steps
 from cadpanel.reference.settings import ReferenceSettings
 
 
@@ -32,7 +33,9 @@ def inspect(
     # Here, not above: neither help nor a refusal should wait for the CAD kernel.
     from cadpanel.brep.survey import survey
 
-    found = survey(file, how)
+    with steps(quiet=False) as shown:
+        shown.begin("Read and measure", file.name)
+        found = survey(file, how)
     if as_json:
         typer.echo(json.dumps(_finite(asdict(found)), indent=1, ensure_ascii=False))
         return

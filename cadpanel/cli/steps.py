@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,6 +11,9 @@ from typing import TextIO
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskID, TextColumn, TimeElapsedColumn
+
+from cadpanel.cli.silence import Unsilent
+from cadpanel.cli.time_left import Clock, TimeLeft, listed
 
 SILENCE = 4.0
 """After so many seconds without a line one says which step is still at work, s."""
@@ -25,32 +27,37 @@ DELIVERING = {
     "verify": "Read back and verify",
 }
 """What the steps of a delivery are called."""
+_ALIKE = {DELIVERING["build"]}
+"""Steps whose parts take about as long as each other, panels and not files: what is left of them can be told."""
 
 
 class Steps:
     """One line a step: what it is, a bar, how far it is, and its time."""
 
-    def __init__(self, progress: Progress) -> None:
+    def __init__(self, progress: Progress, clock: Clock = time.monotonic) -> None:
         """Write to `progress`."""
-        self._progress = progress
+        self._progress, self._clock = progress, clock
         self._tasks: dict[str, TaskID] = {}
+        self._left = TimeLeft(clock)
 
     def begin(self, step: str, detail: str = "") -> None:
         """Start a step of unknown length; those before it are done."""
         for task in self._tasks.values():
             self._finish(task)
         self._tasks[step] = self._progress.add_task(step, total=None, detail=detail)
+        self._left = TimeLeft(self._clock)
 
     def detail(self, step: str, detail: str) -> None:
         """Say how far a step is."""
         self._progress.update(self._tasks[step], detail=detail)
 
     def count(self, step: str, done: int, of: int) -> None:
-        """Say how much of a step is done; begins it where it has not begun."""
+        """Say how much of a step is done, and how long it will go on; begins it where it has not begun."""
         name = DELIVERING.get(step, step)
         if name not in self._tasks:
             self.begin(name)
-        self._progress.update(self._tasks[name], completed=done, total=of, detail=f"{done} of {of}" if of > 1 else "")
+        detail = listed(f"{done} of {of}" if of > 1 else "", self._time_left(name, done, of))
+        self._progress.update(self._tasks[name], completed=done, total=of, detail=detail)
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """Say how far the concurrent fit is from its tolerances and the reference; begins where it has not begun."""
@@ -62,6 +69,9 @@ class Steps:
         """All steps are done."""
         for task in self._tasks.values():
             self._finish(task)
+
+    def _time_left(self, name: str, done: int, of: int) -> str:
+        return self._left.said(done, of) if name in _ALIKE else ""
 
     def _finish(self, task: TaskID) -> None:
         self._progress.update(task, total=1, completed=1)
@@ -79,7 +89,8 @@ class ToldSteps(Steps):
     def count(self, step: str, done: int, of: int) -> None:
         """See `Steps.count`."""
         super().count(step, done, of)
-        self._tell(DELIVERING.get(step, step), done, of, "")
+        name = DELIVERING.get(step, step)
+        self._tell(name, done, of, self._time_left(name, done, of))
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """See `Steps.solving`."""
@@ -98,50 +109,47 @@ class WrittenSteps(Steps):
     A run that is short, or refused, writes none.
     """
 
-    def __init__(self, progress: Progress, stream: TextIO, silence: float, pace: float) -> None:
+    def __init__(
+        self, progress: Progress, stream: TextIO, silence: float, pace: float, clock: Clock = time.monotonic
+    ) -> None:
         """Write to `stream`, never later than `silence` seconds after the line before, and no round before `pace`."""
-        super().__init__(progress)
-        self._stream, self._silence, self._pace = stream, silence, pace
-        self._last = time.monotonic()
-        self._step, self._began = "", time.monotonic()
-        self._said, self._over = threading.Event(), threading.Event()
-        self._watch = threading.Thread(target=self._break_silence, daemon=True)
-        self._watch.start()
+        super().__init__(progress, clock)
+        self._pace, self._last = pace, clock()
+        self._step, self._detail, self._began = "", "", self._last
+        self._lines = Unsilent(stream, silence, self._at_work)
 
     def begin(self, step: str, detail: str = "") -> None:
         """See `Steps.begin`."""
         super().begin(step, detail)
-        self._step, self._began = step, time.monotonic()
+        self._step, self._detail, self._began = step, detail, self._clock()
+
+    def count(self, step: str, done: int, of: int) -> None:
+        """See `Steps.count`."""
+        super().count(step, done, of)
+        if of > 1 and DELIVERING.get(step, step) == self._step:
+            self._detail = listed(f"{done} of {of}", self._time_left(self._step, done, of))
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """See `Steps.solving`."""
         super().solving(step, count, excess, rms)
-        if time.monotonic() - self._last >= self._pace:
-            self._write(f"{step}: {_solving(count, excess, rms)}")
+        if self._clock() - self._last >= self._pace:
+            self._lines.write(f"{step}: {_solving(count, excess, rms)}")
+            self._last = self._clock()
 
     def close(self) -> None:
         """Write nothing any more."""
-        self._over.set()
-        self._said.set()
-        self._watch.join()
+        self._lines.close()
 
-    def _write(self, line: str) -> None:
-        self._stream.write(f"{line}\n")
-        self._stream.flush()
-        self._last = time.monotonic()
-        self._said.set()
-
-    def _break_silence(self) -> None:
-        while not self._over.is_set():
-            if self._said.wait(self._silence):
-                self._said.clear()
-            elif self._step:
-                self._stream.write(f"{self._step}: at work for {time.monotonic() - self._began:.0f} s\n")
-                self._stream.flush()
+    def _at_work(self) -> str:
+        if not self._step:
+            return ""
+        self._last = self._clock()
+        return listed(f"{self._step}: at work for {self._last - self._began:.0f} s", self._detail)
 
 
 def _solving(count: int, excess: float, rms: float) -> str:
-    return f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS deviation {rms:.2f} mm"
+    # Nobody knows how many steps there will be: what remains stands in the words.
+    return f"step {count}: worst gap or drift at {excess:.2f} x its limit (held at 1), RMS deviation {rms:.2f} mm"
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.groups import OUTPUT
 from cadpanel.cli.steps import Steps, steps
+from cadpanel.cli.time_left import TimeLeft
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.records.study import StudyModel
 from cadpanel.delivery.study_files import write_study_files
@@ -71,16 +72,21 @@ def _run(file: Path, how: tuple[ReferenceSettings, ...], settings: tuple[FitSett
     from cadpanel.brep.read import read_reference
     from cadpanel.delivery.earlier import with_earlier
     from cadpanel.delivery.records.study_rows import study_record
-    from cadpanel.studies.trade_off import trade_off
+    from cadpanel.studies.trade_off import most_fits, trade_off
 
     def read(one: ReferenceSettings) -> Reference:
         shown.begin(_READ, file.name)
         return read_reference(file, one)
 
+    fits, begun, left = len(how) * most_fits(settings), 0, TimeLeft()
+
     def tell(point: FitSettings, of: Reference, count: int, excess: float, rms: float) -> None:
-        step = f"{point.feature_name}, {len(of.panels)} panels, {point.widest_gap:g} mm"
+        nonlocal begun
+        begun += count == 0
+        fitted = f"{point.feature_name}, {len(of.panels)} panels, {point.widest_gap:g} mm"
+        step = f"Fit {begun} of {fits} at most: {fitted}"
         if count == 0:
-            shown.begin(step)
+            shown.begin(step, left.said(begun - 1, fits))
         else:
             shown.solving(step, count, excess, rms)
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from cadpanel.cli.steps import steps
 from cadpanel.delivery.outputs.report_html import PAGE
 from cadpanel.delivery.pictures.colours import Colour, require_matplotlib
 from cadpanel.delivery.pictures.views import View
@@ -37,7 +38,9 @@ def view(
         require_matplotlib()
         from cadpanel.delivery.pictures.files import write_picture
 
-        write_picture(page, png, color, view)
+        with steps(quiet=False) as shown:
+            shown.begin("Draw", png.name)
+            write_picture(page, png, color, view)
         return
     if not webbrowser.open(page.resolve().as_uri()):
         raise DeliveryError(f"no browser could be started: open '{page}' in one, or draw it with --png FILE.")

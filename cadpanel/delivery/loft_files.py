@@ -9,12 +9,14 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.loft_skin import build_loft
+from cadpanel.brep.proof.archive import kept_areas
 from cadpanel.brep.proof.loft_facts import loft_facts
 from cadpanel.brep.step.file import write_step
 from cadpanel.brep.step.products import Header
+from cadpanel.delivery.document.loft import FLAT_FILE, SURFACE_FILE, loft_bytes
 from cadpanel.delivery.drawing.dxf import dxf_bytes, frame_of
 from cadpanel.delivery.drawing.entities import Contour, Entity, Line
-from cadpanel.delivery.own_files import LOFT, LOFT_DXF, LOFT_PNG, LOFT_STEP
+from cadpanel.delivery.own_files import LOFT, LOFT_DOCUMENT, LOFT_DXF, LOFT_PNG, LOFT_STEP
 from cadpanel.delivery.records.jsonfile import Vector
 from cadpanel.delivery.records.loft import LoftModel, LoftProofModel, loft_record, write_loft
 from cadpanel.delivery.shop_settings import ShopSettings
@@ -42,7 +44,7 @@ def write_loft_files(
     notes: Sequence[str] = (),
     origin: Vector = (0.0, 0.0, 0.0),
 ) -> LoftModel:
-    """Write loft.step, loft.dxf, loft.json and loft.png, and read the first two back.
+    """Write loft.step, loft.dxf, loft.FCStd, loft.json and loft.png, and read the first three back.
 
     Args:
         loft: the surface.
@@ -62,13 +64,12 @@ def write_loft_files(
         folder / LOFT_STEP, [(loft.name, build_loft(loft), COLOUR)], title=loft.name, header=Header(date=source_date())
     )
     contour = flat_contour(loft, how.chord)
+    rulings = flat_rulings(loft, how.roll_pitch)
     drawing: list[Entity] = [Contour(how.layer("CUT"), contour)]
     if not how.dxf_contour_only:
-        drawing += [Line(how.layer("ROLL"), *line) for line in flat_rulings(loft, how.roll_pitch)]
-    try:
-        (folder / LOFT_DXF).write_bytes(dxf_bytes(drawing, frame_of(how), how.dxf_entities))
-    except OSError as error:
-        raise DeliveryError(f"'{folder / LOFT_DXF}' cannot be written: {error.strerror or error}.") from error
+        drawing += [Line(how.layer("ROLL"), *line) for line in rulings]
+    _write(folder / LOFT_DXF, dxf_bytes(drawing, frame_of(how), how.dxf_entities))
+    _write(folder / LOFT_DOCUMENT, loft_bytes(loft, folder / LOFT_STEP, contour, rulings))
     proof = _proved(loft, folder, contour, how)
     told = () if can_plot() else (_NO_PICTURE,)
     record = loft_record(
@@ -85,11 +86,15 @@ def write_loft_files(
         from cadpanel.delivery.pictures.figure import png_bytes
         from cadpanel.delivery.pictures.loft import draw_loft
 
-        try:
-            (folder / LOFT_PNG).write_bytes(png_bytes(draw_loft(loft)))
-        except OSError as error:
-            raise DeliveryError(f"'{folder / LOFT_PNG}' cannot be written: {error.strerror or error}.") from error
+        _write(folder / LOFT_PNG, png_bytes(draw_loft(loft)))
     return record
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be written: {error.strerror or error}.") from error
 
 
 def flat_contour(loft: Loft, chord: float) -> Array:
@@ -119,6 +124,7 @@ def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> Loft
     # A chord's width all along, and what warp takes from the surface.
     allowed = abs(error.area) + how.chord * float(np.linalg.norm(contour[:, :2] - np.roll(contour[:, :2], 1, axis=0)))
     allowed += how.chord * sum(rail.length for rail in loft.rails)
+    kept = kept_areas(folder / LOFT_DOCUMENT)
     faults = [
         fault
         for wrong, fault in (
@@ -127,6 +133,14 @@ def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> Loft
             (
                 abs(facts.area - error.surface) > (_SAME_AREA + _SAME_WARPED * loft.max_warp) * error.surface,
                 f"'{LOFT_STEP}': its faces have {facts.area:.6g} mm2, expected {error.surface:.6g}.",
+            ),
+            (
+                abs(kept[SURFACE_FILE] - facts.area) > (_SAME_AREA + _SAME_WARPED * loft.max_warp) * facts.area,
+                f"'{LOFT_DOCUMENT}': its surface has {kept[SURFACE_FILE]:.6g} mm2, expected {facts.area:.6g}.",
+            ),
+            (
+                abs(kept[FLAT_FILE] - area) > _SAME_AREA * area,
+                f"'{LOFT_DOCUMENT}': its flat pattern has {kept[FLAT_FILE]:.6g} mm2, expected {area:.6g}.",
             ),
             (bool(audit.errors), f"'{LOFT_DXF}': ezdxf finds {len(audit.errors)} faults."),
             (not drawn, f"'{LOFT_DXF}' holds nothing on the layer that is cut."),

@@ -16,7 +16,9 @@ STUDY, STUDY_TABLE = "study.json", "study.csv"
 JOB = "job.toml"
 """The job that a delivery was made by, where one did."""
 STUDY_PLOTS = ("study.png", "study.svg")
-LOFT, LOFT_STEP, LOFT_DXF, LOFT_PNG = LOFT_FILES = ("loft.json", "loft.step", "loft.dxf", "loft.png")
+LOFT, LOFT_STEP, LOFT_DXF, LOFT_PNG, LOFT_DOCUMENT = LOFT_FILES = (
+    *("loft.json", "loft.step", "loft.dxf", "loft.png", "loft.FCStd"),
+)
 
 MARKS_OF_A_DELIVERY = (REPORT, COMPARISON, STUDY, LOFT)
 """A folder that holds one of these, and it speaks of a schema of ours, was written by cadpanel."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, BoolArray
 from cadpanel.geometry.vectors import norm, unit
 
 # Points of the local cubic that carries values between two points of a curve.
@@ -136,3 +136,12 @@ def _on_cubic(points: Array, nodes: Sequence[Array], factors: Sequence[Array], a
         tangent = tangent * beyond + value
         value = value * beyond + factor
     return points - value, tangent
+
+
+def inside_edges(points: Array, start: Array, stop: Array) -> BoolArray:
+    """(m,) whether points (m, 2) lie inside of closed outlines, told by edges from (q, 2) to (q, 2) in any order."""
+    x, y = points[:, 0, None], points[:, 1, None]
+    passes = (start[:, 1] > y) != (stop[:, 1] > y)
+    rise = stop[:, 1] - start[:, 1]
+    at = start[:, 0] + (y - start[:, 1]) / np.where(rise == 0.0, 1.0, rise) * (stop[:, 0] - start[:, 0])
+    return np.asarray((passes & (x < at)).sum(axis=1) % 2 == 1)

@@ -31,12 +31,14 @@ class SkinMesh:
         triangles: (f, 3) counterclockwise seen from outside.
         chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths.
         ways: (v, 2, 3) unit vectors in the skin along the chart's two axes.
+        patches: (f,) which triangles belong to one patch: its number, in the mesh's own order.
     """
 
     points: Array
     triangles: IntArray
     chart: Array
     ways: Array
+    patches: IntArray
 
 
 def skin_mesh(shape: Panel) -> SkinMesh:
@@ -49,7 +51,7 @@ def skin_mesh(shape: Panel) -> SkinMesh:
 
 def _grid_mesh(shape: Panel) -> SkinMesh:
     """Of patches between two ends: rows from end to end, columns across."""
-    ends = _end_points(shape)
+    ends, owners = _end_points(shape)
     share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
     grid = (1.0 - share) * ends[0] + share * ends[1]
     rows, columns = grid.shape[:2]
@@ -61,12 +63,19 @@ def _grid_mesh(shape: Panel) -> SkinMesh:
     # The walk goes along t x n, so that across and along are right-handed with the outward normal.
     triangles = np.stack([here, right, far, here, far, up], axis=-1).reshape(-1, 3)
     return SkinMesh(
-        points=grid.reshape(-1, 3), triangles=triangles, chart=chart.reshape(-1, 2), ways=ways.reshape(-1, 2, 3)
+        points=grid.reshape(-1, 3),
+        triangles=triangles,
+        chart=chart.reshape(-1, 2),
+        ways=ways.reshape(-1, 2, 3),
+        patches=np.tile(np.repeat(owners, 2), rows - 1),
     )
 
 
-def _end_points(shape: Panel) -> Array:
-    """(2, c, 3) points along both ends, that of a generatrix or straight line over the skin at the same place."""
+def _end_points(shape: Panel) -> tuple[Array, IntArray]:
+    """(2, c, 3) points along both ends, that of a generatrix or straight line over the skin at the same place.
+
+    And (c - 1,) the patches between two of them.
+    """
     corners = shape.corners()
     points, directions, normals = shape.rulings()
     cuts = tuple(zip(*shape.cuts(), strict=True))
@@ -83,7 +92,8 @@ def _end_points(shape: Panel) -> Array:
             way = math.cos(frame.half_angle) * frame.axis + math.sin(frame.half_angle) * radials
             part = np.stack([at + ((q - at) @ m / (way @ m))[:, None] * way for q, m in cuts])
         parts.append(part if not parts else part[:, 1:])
-    return np.concatenate(parts, axis=1)
+    steps_of = [part.shape[1] - (place == 0) for place, part in enumerate(parts)]
+    return np.concatenate(parts, axis=1), np.repeat(np.arange(len(parts)), steps_of)
 
 
 def _polygon_mesh(shape: Panel) -> SkinMesh:
@@ -98,6 +108,7 @@ def _polygon_mesh(shape: Panel) -> SkinMesh:
         triangles=triangles,
         chart=chart,
         ways=np.broadcast_to(axes, (len(chart), 2, 3)),
+        patches=np.zeros(len(triangles), dtype=np.intp),
     )
 
 
@@ -109,7 +120,13 @@ def _tray_mesh(shape: TrayShape) -> SkinMesh:
     flat = (_round_reliefs(shape) - origin) @ axes.T
     chart, triangles = _halved(flat, _ears(flat))
     meshes = [
-        SkinMesh(points=origin + chart @ axes, triangles=triangles, chart=chart, ways=np.tile(axes, (len(chart), 1, 1)))
+        SkinMesh(
+            points=origin + chart @ axes,
+            triangles=triangles,
+            chart=chart,
+            ways=np.tile(axes, (len(chart), 1, 1)),
+            patches=np.zeros(len(triangles), dtype=np.intp),
+        )
     ]
     meshes += [_fold_mesh(shape, edge, axes) for edge in np.flatnonzero(plan.folded).tolist()]
     starts = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
@@ -118,6 +135,7 @@ def _tray_mesh(shape: TrayShape) -> SkinMesh:
         triangles=np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]),
         chart=np.concatenate([mesh.chart for mesh in meshes]),
         ways=np.concatenate([mesh.ways for mesh in meshes]),
+        patches=np.concatenate([mesh.patches + 2 * place for place, mesh in enumerate(meshes)]),
     )
 
 
@@ -154,6 +172,7 @@ def _fold_mesh(shape: TrayShape, edge: int, axes: Array) -> SkinMesh:
         triangles=np.stack([here, far, right, here, under, far], axis=-1).reshape(-1, 3),
         chart=chart.reshape(-1, 2),
         ways=np.repeat(ways, len(steps), axis=0),
+        patches=np.repeat([0, 1], 2 * ACROSS * ALONG),
     )
 
 

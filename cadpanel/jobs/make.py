@@ -20,7 +20,7 @@ from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.settings import ReferenceSettings
-from cadpanel.reference.texts import AUTO
+from cadpanel.reference.texts import AUTO, BY_FITS, STRIPS
 
 if TYPE_CHECKING:
     from cadpanel.fitting.result import FitResult
@@ -101,9 +101,11 @@ def make_delivery(
     Raises:
         CadpanelError: the reference or a setting is refused, or the proof does not hold.
     """
-    make = _fewest if asked.how.divide == AUTO else _once
-    if asked.how.divide == AUTO and asked.settings.max_deviation is None:
-        raise SettingsError(f"--divide {AUTO} is chosen by the largest deviation: give --max-deviation, too.")
+    make = _fewest if asked.how.divide == AUTO else _strips if asked.how.divide == STRIPS else _once
+    if asked.how.divide in BY_FITS and asked.settings.max_deviation is None:
+        raise SettingsError(
+            f"--divide {asked.how.divide} is chosen by the largest deviation: give --max-deviation, too."
+        )
     shown.begin(_READ, asked.file.name)
     # Refused before what reads is started: it takes seconds, and no refusal should wait for it.
     require_files(asked.file, asked.how)
@@ -216,6 +218,44 @@ def _fewest(
             read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare, admitted=fit_stock
         )
     return _delivered(asked, found.result, folder, shown, seconds_to_read, found.shortfall())
+
+
+def _strips(
+    asked: Asked,
+    folder: Path,
+    shown: Told,
+    time_limit: float | None,
+    ending: Callable[[], AbstractContextManager[Ending]],
+) -> tuple[ReportModel, str | None]:
+    """The same with panels one after the other, each as wide as the largest deviation allows."""
+    from cadpanel.brep.read import read_reference
+    from cadpanel.delivery.earlier import with_earlier
+    from cadpanel.studies.widest_strips import Cuts, uncut, widest_strips
+
+    seconds_to_read = 0.0
+
+    def read(cuts: Cuts) -> Reference:
+        nonlocal seconds_to_read
+        began = time.perf_counter()
+        reference = read_reference(asked.file, uncut(asked.how, cuts))
+        seconds_to_read += time.perf_counter() - began
+        return reference
+
+    with ending() as interrupted:
+
+        def tell(seams: int, place: float) -> bool:
+            shown.begin(f"Strip {seams}, to {place:.0f} mm")
+            return not interrupted.heard()
+
+        found = widest_strips(
+            read,
+            asked.settings,
+            progress=tell,
+            time_limit=time_limit,
+            prepare=partial(with_earlier, folder_of=asked.folder_of),
+        )
+    chosen_panels([panel.name for panel in found.result.reference.panels], asked.shop.only)
+    return _delivered(asked, found.result, folder, shown, seconds_to_read, found.result.shortfall())
 
 
 def _delivered(

@@ -20,7 +20,7 @@ from cadpanel.jobs.region import Job, Region
 from cadpanel.jobs.schema import RULES, asked, made, region_values
 from cadpanel.jobs.variables import combinations, resolved, substituted
 from cadpanel.near import near_names
-from cadpanel.reference.texts import AUTO
+from cadpanel.reference.texts import BY_FITS
 
 _LONGEST_NAME = 120
 _REFERENCE, _SHA256, _MATRIX = "reference", "sha256", "matrix"
@@ -195,8 +195,8 @@ def _check(file: _File, given: _Values, reference: Path, how: Any, settings: Any
         chosen_outputs(shop.outputs)
     except SettingsError as error:
         file.refuse(given.place("outputs"), str(error))
-    if how.divide == AUTO and settings.max_deviation is None:
-        file.refuse(given.place("divide"), f"'divide = \"{AUTO}\"' is chosen by a max_deviation: give one, too")
+    if how.divide in BY_FITS and settings.max_deviation is None:
+        file.refuse(given.place("divide"), f"'divide = \"{how.divide}\"' is chosen by a max_deviation: give one, too")
 
 
 def _refuse_values(file: _File, given: _Values, error: ValidationError) -> NoReturn:

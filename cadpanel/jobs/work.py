@@ -119,7 +119,9 @@ class _Told:
         self._tell(step, done, of, "")
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
-        self._tell(step, 0, 1, f"step {count}: worst gap or drift at {excess:.2f} x its limit, RMS {rms:.2f} mm")
+        self._tell(
+            step, 0, 1, f"step {count}: worst gap or drift at {excess:.2f} x its limit (held at 1), RMS {rms:.2f} mm"
+        )
 
 
 _environment = threading.Lock()

@@ -12,7 +12,16 @@ from pathlib import Path
 from typing import Literal, TypedDict, get_args
 
 from cadpanel.errors import SettingsError
-from cadpanel.reference.texts import AUTO, Auto, choices_of, parse_divide, parse_grid, parse_panel_size, parse_stations
+from cadpanel.reference.texts import (
+    BY_FITS,
+    STRIPS,
+    Auto,
+    choices_of,
+    parse_divide,
+    parse_grid,
+    parse_panel_size,
+    parse_stations,
+)
 from cadpanel.setting import Option, Range, check_ranges, setting
 
 By = Literal["length", "parameter"]
@@ -36,7 +45,8 @@ class ReferenceSettings:
         faces: which faces of the file are the skin, each "NAME", "name=NAME", "layer=LAYER", "color=#RRGGBB", a number
             or a range of numbers ("3", "2-5"), as `inspect` lists them; all faces if None. * stands for
             anything, and a name that is written so in the file counts before it.
-        divide: cut each strip into so many panels of equal length; "auto" for as few as hold what is asked of a fit.
+        divide: cut each strip into so many panels of equal length; "auto" for as few as hold what is asked of a fit,
+            "strips" for panels one after the other, each as wide as a largest deviation allows.
         panel_length: cut each strip into as few equal panels as are no longer than this along either long edge, mm.
         seams: with one of these two, "square" cuts the strip square to it; "level" at equal heights, in level planes;
             "conjugate" where panels can meet, as the surface bends, as near to square as `cut_turn` says. A fit holds
@@ -75,8 +85,9 @@ class ReferenceSettings:
         option=Option(
             takes=str,
             read=lambda _, text: parse_divide(text),
-            metavar="N|auto",
-            help="Cut each strip, or ring, into so many panels of equal length; auto: as few as hold what is asked.",
+            metavar="N|auto|strips",
+            help="Cut each strip, or ring, into so many panels of equal length; auto: as few as hold what is asked; "
+            "strips: each as wide as --max-deviation allows.",
         ),
     )
     panel_length: float | None = setting(
@@ -170,7 +181,7 @@ class ReferenceSettings:
         if len(asked) > 1:
             ways = " and ".join(way.replace("_", " ") for way in asked)
             raise SettingsError(f"{ways} are ways to cut the same surface: choose one of them")
-        if self.divide is not None and self.divide != AUTO:
+        if self.divide is not None and self.divide not in BY_FITS:
             _require_count("number of panels to divide a strip into", self.divide, least=1)
         self._check_lengthwise()
         object.__setattr__(self, "grid", _grid(self.grid))
@@ -195,6 +206,8 @@ class ReferenceSettings:
                 raise SettingsError(
                     "a band about the lip is divided along its length: give the number of panels, too, or their length"
                 )
+        if self.divide == STRIPS and (self.lip is not None or self.seams not in ("square", "free")):
+            raise SettingsError("strips are cut square to the whole surface: leave 'lip' and the kind of seams out")
         if self.seams not in get_args(Seams):
             raise SettingsError(
                 f"seams are {', '.join(get_args(Seams)[:-1])} or {get_args(Seams)[-1]}, not {self.seams!r}"

@@ -7,8 +7,11 @@ from typing import Literal
 
 from cadpanel.errors import SettingsError
 
-Auto = Literal["auto"]
+Auto = Literal["auto", "strips"]
 AUTO: Auto = "auto"
+STRIPS: Auto = "strips"
+BY_FITS = (AUTO, STRIPS)
+"""Numbers of panels that are found by fits: the fewest equal ones, and panels each as wide as a deviation allows."""
 """Instead of a number of panels: as few as hold what is asked of a fit."""
 
 # One choice of faces and the comma behind it: what holds a comma stands in quotation marks, "" for one of them.
@@ -48,15 +51,16 @@ def choice_named(word: str) -> str:
 
 
 def parse_divide(text: str) -> int | Auto:
-    """A number of panels, or "auto".
+    """A number of panels, "auto" or "strips".
 
     Raises:
-        SettingsError: the text is neither.
+        SettingsError: the text is none of these.
     """
-    if text.strip() == AUTO:
-        return AUTO
+    for word in BY_FITS:
+        if text.strip() == word:
+            return word
     if re.fullmatch(r"\s*-?\d{1,9}\s*", text) is None:
-        raise SettingsError(f"--divide is a number of panels or {AUTO}, not '{text}'.")
+        raise SettingsError(f"--divide is a number of panels, {AUTO} or {STRIPS}, not '{text}'.")
     return int(text)
 
 

@@ -46,6 +46,11 @@ def trade_off(
     return tuple(found)
 
 
+def most_fits(settings: Sequence[FitSettings]) -> int:
+    """How many fits a study of one reference takes at most: each point alone, and from both of its neighbours."""
+    return sum(3 * len(group) - 2 for group in _curves(settings))
+
+
 def _curves(settings: Sequence[FitSettings]) -> list[list[FitSettings]]:
     groups: dict[str, list[FitSettings]] = {}
     for one in settings:

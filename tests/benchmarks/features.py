@@ -4,6 +4,7 @@ python -m tests.benchmarks.features recovery
 python -m tests.benchmarks.features strips
 python -m tests.benchmarks.features grids
 python -m tests.benchmarks.features speed
+python -m tests.benchmarks.features starts
 """
 
 from __future__ import annotations
@@ -14,13 +15,14 @@ from pathlib import Path
 from typing import Annotated, Unpack
 
 import numpy as np
+import pytest
 import typer
 
 import cadpanel as cp
 from cadpanel.features.catalogue import CATALOGUE, feature
-from cadpanel.fitting.methods.local import fit_local
+from cadpanel.fitting.methods.local import Local, fit_local
 from cadpanel.fitting.problem import pose
-from cadpanel.fitting.settings import FitKeywords
+from cadpanel.fitting.settings import FitKeywords, FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from fixtures.grids import dome, grid, honeycomb, vault
 from tests.instances import random_shapes
@@ -95,6 +97,43 @@ def speed(
             share = _quickest(1, reference, feature="auto", max_deviation=largest) / unit
             print(f" {share:14.1f}", end="", flush=True)
         print()
+
+
+@app.command()
+def starts(
+    instances: Annotated[int, typer.Option(help="Random panels of each feature.")] = 60,
+    seed: Annotated[int, typer.Option(help="Of the random numbers.")] = 5,
+) -> None:
+    """Local fits whose other start is cut evenly, and those where it is cones along a strip, panels in both alike.
+
+    Of the second start and of the fit the RMS deviation, mm; and panels that are not met; and processor seconds.
+    """
+    print(
+        f"{'panels':<18} {'feature':<22} {'other start':<12} {'start':>8} {'fit':>9} {'off':>4} {'steps':>6} {'s':>6}"
+    )
+    for name in ("plane-cone-cone-plane", "cone-spline-2", "cone-spline-4", "cone-spline-6"):
+        of = feature(name)
+        known = alone(*random_shapes(of, seed, instances))
+        strip = {fixture: cp.read(FIXTURES / f"{fixture}.step") for fixture in ("kai_tak_nw", "kai_tak_se_east")}
+        for label, reference in {"known": known, **strip}.items():
+            for start in ("even", "cones"):
+                _start_row(label, reference, name, start)
+
+
+def _start_row(label: str, reference: cp.Reference, name: str, start: str) -> None:
+    began = time.process_time()
+    with pytest.MonkeyPatch.context() as patch:
+        if start == "even":
+            patch.setattr("cadpanel.fitting.start.chains.bends_in_cones", lambda _of: False)
+        problem, begin = pose(reference, [feature(name)] * len(reference.panels))
+    found = Local().fit(problem, begin, FitSettings())
+    seconds = time.process_time() - began
+    first, last = (np.sqrt((problem.deviations(at)[0] ** 2).mean()) for at in (begin[1], found.unknowns))
+    off = int((problem.deviations(found.unknowns)[0] > FOUND).sum())
+    print(
+        f"{label:<18} {name:<22} {start:<12} {first:8.2f} {last:9.2g} {off:4d} {found.iterations:6d} {seconds:6.2f}",
+        flush=True,
+    )
 
 
 def _quickest(times: int, reference: cp.Reference, **settings: Unpack[FitKeywords]) -> float:

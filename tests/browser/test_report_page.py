@@ -102,6 +102,17 @@ def test_all_panels_are_one_mesh(page: Any) -> None:
     assert page.execute_script("return cadpanel.drawCalls()") == 2  # the sheets, and the lines of the seams
 
 
+def test_nothing_is_drawn_again_while_nothing_moves(page: Any) -> None:
+    frames = [page.execute_script("return cadpanel.frames()")]
+    for _ in range(10):
+        drawn(page)
+    frames.append(page.execute_script("return cadpanel.frames()"))
+    page.find_elements("css selector", "#views button")[1].click()
+    drawn(page)
+    frames.append(page.execute_script("return cadpanel.frames()"))
+    assert frames[0] == frames[1] < frames[2] <= frames[1] + 2
+
+
 def test_a_click_chooses_the_panel_or_the_seam_under_it(page: Any) -> None:
     for name in NAMES:
         click_in_picture(page, name)
@@ -148,6 +159,8 @@ def test_sliders_and_the_reference_change_the_picture(page: Any) -> None:
     moves = (
         "const e = document.getElementById('apart'); e.value = 60; e.dispatchEvent(new Event('input'))",
         "const e = document.getElementById('axis'); e.value = '0'; e.dispatchEvent(new Event('change'))",
+        "const e = document.getElementById('cut-from'); e.value = 300; e.dispatchEvent(new Event('input'))",
+        "const e = document.getElementById('axis'); e.value = '2'; e.dispatchEvent(new Event('change'))",
         "document.getElementById('ghost').click()",
     )
     for move in moves:

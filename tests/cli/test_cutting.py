@@ -75,7 +75,8 @@ def test_bricks_of_a_mesh_meet_part_by_part(run: Run, tmp_path: Path) -> None:
         (("--lip", "300"), "give the number of panels, too, or their length"),
         (("--divide", "3", "--panel-length", "900"), "divide and panel length are ways to cut the same surface"),
         (("--grid", "3x2", "--panel-size", "900x500"), "grid and panel size are ways to cut the same surface"),
-        (("--divide", "three"), "--divide is a number of panels or auto, not 'three'"),
+        (("--divide", "three"), "--divide is a number of panels, auto or strips, not 'three'"),
+        (("--divide", "strips", "--lip", "300"), "strips are cut square to the whole surface"),
         (("--panel-length", "0"), "the length of a panel must be a positive number of mm"),
         (("--panel-length", "1e-9"), "would be more than 1000000"),
         (("--panel-size", "900"), "--panel-size is two lengths in mm like 1500x800, not '900'"),
@@ -156,6 +157,21 @@ def test_as_few_panels_as_hold_everything_are_found_and_what_was_tried_is_told(
 
 
 @thorough
+def test_panels_each_as_wide_as_the_deviation_allows_are_delivered_with_the_cuts_that_make_them_again(
+    run: Run, strip: Path, tmp_path: Path
+) -> None:
+    words = ("fit", strip, "--unit", "mm", "--divide", "strips", "--gap-tolerance", "5")
+    answer = run(*words, "--max-deviation", "4", "--out", tmp_path / "out")
+    assert answer.code == 0, answer.err
+    report = json.loads((tmp_path / "out" / "report.json").read_text(encoding="utf-8"))
+    stations = report["reference"]["reading"]["stations"]
+    assert len(stations) == len(report["panels"]) - 1 > 0
+    assert report["summary"]["max_deviation"] <= 4.0
+    assert any("as wide as" in note for note in report["reference"]["notes"])
+    assert run("verify", tmp_path / "out").code == 0
+
+
+@thorough
 def test_where_no_number_of_panels_holds_the_best_is_delivered_and_said(
     run: Run, strip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -184,6 +200,8 @@ def test_the_number_of_panels_is_chosen_by_the_largest_deviation(run: Run, strip
     assert answer.code == 2
     assert answer.is_one_sentence(), answer.err
     assert "give --max-deviation, too" in answer.err
+    answer = run("fit", strip, "--divide", "strips", "--out", tmp_path / "out")
+    assert "--divide strips is chosen by the largest deviation" in answer.err
     answer = run("compare", strip, "--unit", "mm", "--divide", "auto", "--out", tmp_path / "out")
     assert (answer.code, answer.is_one_sentence()) == (2, True)
     assert "is found by fits: ask 'cadpanel fit' or fewest_panels()" in answer.err

@@ -9,6 +9,7 @@ import pytest
 
 import cadpanel as cp
 from cadpanel.brep.building.loft_skin import build_loft
+from cadpanel.brep.proof.archive import kept_areas
 from cadpanel.brep.proof.loft_facts import loft_facts
 from cadpanel.delivery import loft_files
 from cadpanel.delivery.pictures.loft import draw_loft
@@ -33,7 +34,7 @@ def test_a_loft_is_written_and_read_back(run, file, tmp_path):
     answer = run("loft", file, "1", "2", "--unit", "mm", "--out", tmp_path / "loft", "--quiet")
     assert (answer.code, answer.out) == (0, "")
     assert {path.name for path in (tmp_path / "loft").iterdir()} == {
-        *("loft.step", "loft.dxf", "loft.json", "loft.png", "manifest.json")
+        *("loft.step", "loft.dxf", "loft.FCStd", "loft.json", "loft.png", "manifest.json")
     }
     record = read_loft(tmp_path / "loft" / "loft.json")
     assert record.exact
@@ -41,6 +42,9 @@ def test_a_loft_is_written_and_read_back(run, file, tmp_path):
     facts = loft_facts(tmp_path / "loft" / "loft.step")
     assert (facts.valid, facts.faces) == (True, record.proof.faces)
     assert facts.area == pytest.approx(record.flat.area, rel=1e-6)
+    kept = kept_areas(tmp_path / "loft" / "loft.FCStd")
+    assert kept["Surface.brp"] == pytest.approx(record.flat.area, rel=1e-6)
+    assert kept["FlatPattern.brp"] == pytest.approx(record.proof.drawn_area, rel=1e-6)
     drawing = ezdxf.filemanagement.readfile(tmp_path / "loft" / "loft.dxf")
     assert not drawing.audit().errors
     assert {entity.dxf.layer for entity in drawing.modelspace()} == {"CUT", "ROLL"}

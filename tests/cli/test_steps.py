@@ -32,7 +32,7 @@ def test_a_long_step_says_that_it_is_at_work() -> None:
     shown.begin("Read reference", "roof.step")
     assert stream.something.wait(60.0)
     shown.close()
-    assert stream.getvalue().startswith("Read reference: at work for 0 s\n")
+    assert stream.getvalue().startswith("Read reference: at work for 0 s, roof.step\n")
     said = stream.getvalue()
     shown.begin("Build solids")
     assert stream.getvalue() == said
@@ -47,7 +47,7 @@ def test_every_round_of_a_fit_is_a_line() -> None:
     shown.count("build", 1, 2)
     shown.close()
     assert stream.getvalue().splitlines() == [
-        f"Fit all at once: step {count}: worst gap or drift at 1.50 x its limit, RMS deviation 7.25 mm"
+        f"Fit all at once: step {count}: worst gap or drift at 1.50 x its limit (held at 1), RMS deviation 7.25 mm"
         for count in (1, 2)
     ]
 

@@ -10,11 +10,18 @@ import pytest
 from ezdxf.filemanagement import readfile
 
 from cadpanel.delivery.deliver import deliver
+from cadpanel.delivery.outputs.report_html import PAGE, ReportHtml
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.page.html import page_bytes, read_page
+from cadpanel.delivery.page.packing import packed
+from cadpanel.delivery.page.scene import scene_of
+from cadpanel.delivery.pictures.files import scene_of_page
 from cadpanel.delivery.records.report import ReportModel, write_report
+from cadpanel.delivery.records.to_shape import recorded_shapes
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
-from cadpanel.delivery.verify import verify
+from cadpanel.delivery.verify import contents_of, verify
+from cadpanel.geometry.drilled_mesh import hole_count
 from tests.delivered import fitted
 from tests.thorough import thorough
 
@@ -73,6 +80,20 @@ def test_a_hole_that_the_report_has_elsewhere_or_not_at_all_is_seen(folder: Path
         write_report(report.model_copy(update={"panels": (changed, *report.panels[1:])}), folder / REPORT)
         assert "the report's fixing hole is not that of the panel" in " ".join(verify(folder).failures)
     write_report(report, folder / REPORT)
+
+
+def test_the_page_shows_the_holes_and_one_without_them_is_seen(folder: Path, report: ReportModel) -> None:
+    page = folder / PAGE
+    panels = scene_of_page(page).panels
+    assert [hole_count(panel.triangles) for panel in panels] == [len(panel.fixings) for panel in report.panels]
+    was, shapes = page.read_bytes(), fitted().shapes
+    numbers, shown = read_page(page)
+    whole = packed(scene_of(fitted(), shapes, [shape.offset(-3.0) for shape in shapes]))
+    page.write_bytes(page_bytes("strip", numbers, shown | whole))
+    failures = ReportHtml().prove(folder, contents_of(report, recorded_shapes(report))).failures
+    page.write_bytes(was)
+    assert len(failures) == len(report.panels)
+    assert all("'report.html' does not show the" in said for said in failures)
 
 
 @thorough

@@ -8,14 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+import cadpanel as cp
 from cadpanel.delivery.deliver import deliver
 from cadpanel.delivery.outputs.freecad import DOCUMENT
-from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.own_files import LOFT_DOCUMENT, REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from tests.delivered import fitted
 from tests.freecad.program import run_in_freecad
+from tests.known_rails import CYLINDER, rails
+from tests.thorough import thorough
 
 pytestmark = pytest.mark.freecad
 
@@ -132,3 +135,13 @@ def test_the_window_shows_panels_coloured_by_deviation_and_red_seams(
     red = sum(count for (red, green, blue), count in pixels.items() if red >= 5 and max(green, blue) <= 2)
     assert min(yellow, violet) > 0.005 * whole
     assert red > 20
+
+
+@thorough
+def test_the_document_of_a_loft_holds_a_valid_surface_and_its_flat_pattern(tmp_path: Path) -> None:
+    record = cp.deliver_loft(cp.loft(*rails(CYLINDER, second=(0.2, 1.5)), name="hood"), tmp_path / "loft")
+    given = {"CADPANEL_DOCUMENT": str(tmp_path / "loft" / LOFT_DOCUMENT)}
+    found = {one["label"]: one for one in run_in_freecad("document_driver.py", given, window=False)["objects"]}
+    assert all(found[label]["valid"] for label in ("hood", "hood flat"))
+    assert found["hood"]["area"] == pytest.approx(record.proof.area, rel=1e-5)
+    assert found["hood flat"]["area"] == pytest.approx(record.proof.drawn_area, rel=1e-6)

@@ -9,7 +9,7 @@ import pytest
 
 from cadpanel.errors import PanelError
 from cadpanel.geometry.flat_sizes import flat_sizes
-from cadpanel.geometry.returns import SIDES, ReturnRule, foldable_sides, tangent_length, with_returns
+from cadpanel.geometry.returns import SIDES, ReturnRule, foldable_sides, leg_behind, tangent_length, with_returns
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, sheet_depth
 from cadpanel.geometry.unroll import neutral_offset, unroll
@@ -74,3 +74,5 @@ def test_a_leg_of_which_nothing_is_left_is_refused_with_the_length_that_would_do
     with pytest.raises(PanelError, match="leaves 2 mm behind its fold at side 1; ask for one of at least 10 mm"):
         with_returns(shape, ["side 1"], ReturnRule(length=9.0, inner_radius=4.0), 3.0, "outer")
     with_returns(shape, ["side 1"], ReturnRule(length=10.0, inner_radius=4.0), 3.0, "outer")
+    # As much as the sheet is thick is enough.
+    assert leg_behind("N-01", "side 1", ReturnRule(length=10.0, inner_radius=4.0), 3.0, 7.0) == 3.0

@@ -1,6 +1,7 @@
 """The blank about an outline: no rectangle is smaller, and turning the outline changes nothing."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -36,3 +37,7 @@ def test_a_part_fits_a_sheet_either_way_round_and_not_a_hair_beyond():
     assert blank.fits(2.0, 3.0)
     assert not blank.fits(2.999, 2.5)
     assert not blank.fits(1.999, 5.0)
+    # What a millionth of a millimetre is too long or too wide fits as it stands.
+    for length, width in ((3.0 + 1e-6, 2.0), (3.0, 2.0 + 1e-6)):
+        assert replace(blank, length=length, width=width).fits(3.0, 2.0)
+        assert not replace(blank, length=length + 1e-9, width=width + 1e-9).fits(3.0, 2.0)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cadpanel.reference.settings import ReferenceSettings
-from cadpanel.reference.texts import AUTO
+from cadpanel.reference.texts import BY_FITS
 
 SHORTER = 0.8
 """Share of a length that is tried instead."""
@@ -39,7 +39,7 @@ def _of_lengths(how: ReferenceSettings) -> Sequence[OtherWay]:
     if how.panel_length is not None:
         length = SHORTER * how.panel_length
         return _plain(how, panel_length=length), _grid(how, ROUND, 2)
-    if how.divide is None or how.divide == AUTO:
+    if how.divide is None or how.divide in BY_FITS:
         return (_grid(how, ROUND, 2),)
     return _plain(how, divide=int(how.divide) + 1), _grid(how, ROUND, 2)
 

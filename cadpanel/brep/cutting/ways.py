@@ -24,7 +24,6 @@ from cadpanel.brep.skin.adjacency import Surface
 from cadpanel.brep.splitting.splitter import UncutError
 from cadpanel.errors import CadpanelError, ReferenceFileError, SettingsError
 from cadpanel.reference.settings import ReferenceSettings
-from cadpanel.reference.texts import AUTO
 
 DRAW_ON = "draw it on the surface, on to the next curve or to the outline, or take it out"
 """What to do about a curve that does not cut."""
@@ -102,7 +101,7 @@ def cut_surfaces(
 
 def _lengths(skin: _Skin) -> Cut:
     how, source = skin.settings, skin.model.source
-    if how.divide == AUTO:
+    if isinstance(how.divide, str):
         raise SettingsError(f"how many panels '{source}' needs is found by fits: ask 'cadpanel fit' or fewest_panels()")
     wanted = Lengths(
         count=how.divide, longest=how.panel_length, seams=how.seams, most_turn=float(np.radians(how.cut_turn))

@@ -16,6 +16,7 @@ from cadpanel.brep.building.sheet import volume_of
 from cadpanel.brep.kernel.shapes import faces_of, shape_of_text, shapes_of
 from cadpanel.brep.proof.inspection import vertices_of
 from cadpanel.brep.proof.kept_facts import KeptFacts
+from cadpanel.brep.proof.loft_facts import close_area
 from cadpanel.errors import DeliveryError
 
 SHAPE_ENDING = ".brp"
@@ -27,6 +28,19 @@ def kept_facts(path: Path) -> dict[str, KeptFacts]:
     Raises:
         DeliveryError: it cannot be read, or a shape in it is none.
     """
+    return {name: _measured(shape) for name, shape in _shapes(path).items()}
+
+
+def kept_areas(path: Path) -> dict[str, float]:
+    """Areas in mm2 of every shape in an archive, integrated as closely as those of a loft's STEP file.
+
+    Raises:
+        DeliveryError: it cannot be read, or a shape in it is none.
+    """
+    return {name: close_area(shape) for name, shape in _shapes(path).items()}
+
+
+def _shapes(path: Path) -> dict[str, TopoDS_Shape]:
     try:
         with ZipFile(path) as archive:
             texts = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
@@ -34,13 +48,16 @@ def kept_facts(path: Path) -> dict[str, KeptFacts]:
         raise DeliveryError(f"'{path}' cannot be read: {error.strerror or error}.") from error
     except (BadZipFile, zlib.error) as error:
         raise DeliveryError(f"'{path}' cannot be read: it is damaged ({error}); write the delivery again.") from error
-    return {name: _measured(path, name, text) for name, text in texts.items()}
+    found = {name: shape_of_text(text) for name, text in texts.items()}
+    for name, shape in found.items():
+        if shape.IsNull():
+            raise DeliveryError(
+                f"'{path}' cannot be read: the shape '{name}' in it is damaged; write the delivery again."
+            )
+    return found
 
 
-def _measured(path: Path, name: str, text: bytes) -> KeptFacts:
-    shape = shape_of_text(text)
-    if shape.IsNull():
-        raise DeliveryError(f"'{path}' cannot be read: the shape '{name}' in it is damaged; write the delivery again.")
+def _measured(shape: TopoDS_Shape) -> KeptFacts:
     solids = len(shapes_of(shape, TopAbs_SOLID))
     faces = faces_of(shape)
     return KeptFacts(

@@ -10,6 +10,7 @@ from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane
 from OCP.GProp import GProp_GProps
+from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.step.file import read_step_shapes
@@ -42,11 +43,16 @@ def loft_facts(path: Path) -> LoftFacts:
         DeliveryError: it is missing, or damaged.
     """
     name, shape = read_step_shapes(path, heal=True)[0]
-    measured = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, measured, _ACCURACY)
     return LoftFacts(
         name=name,
         valid=bool(BRepCheck_Analyzer(shape).IsValid()),
         faces=tuple(_KINDS.get(BRepAdaptor_Surface(face).GetType(), "ruled") for face in faces_of(shape)),
-        area=float(measured.Mass()),
+        area=close_area(shape),
     )
+
+
+def close_area(shape: TopoDS_Shape) -> float:
+    """The area of a shape's faces, mm2, integrated until it changes by less than a billionth."""
+    measured = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, measured, _ACCURACY)
+    return float(measured.Mass())

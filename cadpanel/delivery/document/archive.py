@@ -26,7 +26,15 @@ def archive_bytes(contents: Contents, shapes: Iterable[tuple[str, bytes]]) -> by
     Raises:
         SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
     """
-    document, looks = xml_files(contents)
+    return packed(*xml_files(contents), shapes)
+
+
+def packed(document: bytes, looks: bytes, shapes: Iterable[tuple[str, bytes]]) -> bytes:
+    """The archive of a document's two files and its shapes.
+
+    Raises:
+        SettingsError: SOURCE_DATE_EPOCH is no number of seconds.
+    """
     out, date = io.BytesIO(), archive_date()
     with ZipFile(out, "w", ZIP_DEFLATED) as archive:
         for name, data in ((DOCUMENT_XML, document), *shapes, (GUI_XML, looks)):

@@ -26,10 +26,14 @@ class ReportHtml(Output):
         from cadpanel.delivery.page.numbers import page_numbers
         from cadpanel.delivery.page.packing import packed
         from cadpanel.delivery.page.scene import scene_of
+        from cadpanel.geometry.drilled_mesh import hole_rims
+        from cadpanel.geometry.sheet_checks import sheet_depth
 
         assert delivery.result is not None
         panels = delivery.panels
-        scene = scene_of(delivery.result, [panel.shape for panel in panels], [panel.other for panel in panels])
+        depth = sheet_depth(delivery.sheet.thickness, delivery.sheet.skin_side)
+        rims = [hole_rims(panel.fixings.holes if panel.fixings is not None else (), depth) for panel in panels]
+        scene = scene_of(delivery.result, [panel.shape for panel in panels], [panel.other for panel in panels], rims)
         shapes = {**packed(scene), "flats": _flats(delivery)}
         page = page_bytes(delivery.title, page_numbers(delivery), shapes)
         try:
@@ -63,6 +67,7 @@ def _flats(contents: Contents) -> list[dict[str, Any]]:
 def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:
     """What the pictures show that the report does not tell."""
     from cadpanel.delivery.page.packing import unpacked
+    from cadpanel.geometry.drilled_mesh import hole_count
 
     try:
         scene = unpacked(shapes)
@@ -70,11 +75,16 @@ def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:
         return [f"'{PAGE}' holds no panels that could be shown: {error}."]
     if [panel.name for panel in scene.panels] != [record.name for record in contents.records]:
         return [f"'{PAGE}' does not show the panels that are delivered."]
+    drilled = [
+        f"'{PAGE}' does not show the {len(part.circles)} holes of panel '{panel.name}': write the delivery again."
+        for panel, part in zip(scene.panels, contents.parts, strict=True)
+        if hole_count(panel.triangles) != len(part.circles)
+    ]
     told = {seam.panels + seam.edges: seam for seam in contents.seams}
     most: dict[tuple[str, str], float] = {}
     for seam in told.values():
         most[seam.panels] = max(most.get(seam.panels, 0.0), seam.max_seam_gap)
-    return [
+    return drilled + [
         f"'{PAGE}' shows a gap of {seam.profile.gap.max():.2f} mm between '{seam.panels[0]}' and '{seam.panels[1]}', "
         "more than the report tells."
         for seam in scene.seams

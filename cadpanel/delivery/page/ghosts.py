@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
-from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.arrays import Array, IntArray
+from cadpanel.geometry.polyline import inside_edges
 from cadpanel.geometry.skin_mesh import SkinMesh
 from cadpanel.reference.model import PanelReference
 
@@ -40,7 +41,8 @@ def ghost(reference: PanelReference, mesh: SkinMesh) -> Ghost:
         triangles = Delaunay(flat).simplices.astype(np.intp)
     except QhullError:  # all on one line, as far as the chart can tell
         triangles = np.empty((0, 3), dtype=np.intp)
-    inside = _inside(flat[triangles].mean(axis=1), flat[: len(outline)])
+    rim = flat[: len(outline)]
+    inside = inside_edges(flat[triangles].mean(axis=1), rim, np.roll(rim, -1, axis=0))
     return Ghost(points=points, outline=len(outline), triangles=triangles[inside])
 
 
@@ -62,13 +64,3 @@ def _on_chart(points: Array, mesh: SkinMesh) -> Array:
     _, nearest = cKDTree(mesh.points).query(points)
     beside = np.einsum("mwx,mx->mw", mesh.ways[nearest], points - mesh.points[nearest])
     return np.asarray(mesh.chart[nearest] + beside)
-
-
-def _inside(points: Array, outline: Array) -> BoolArray:
-    """(m,) whether points (m, 2) lie inside a closed outline (q, 2)."""
-    start, stop = outline, np.roll(outline, -1, axis=0)
-    x, y = points[:, 0, None], points[:, 1, None]
-    passes = (start[:, 1] > y) != (stop[:, 1] > y)
-    rise = stop[:, 1] - start[:, 1]
-    at = start[:, 0] + (y - start[:, 1]) / np.where(rise == 0.0, 1.0, rise) * (stop[:, 0] - start[:, 0])
-    return np.asarray((passes & (x < at)).sum(axis=1) % 2 == 1)

@@ -15,11 +15,13 @@ from cadpanel.delivery.records.patches import ConePatchModel, CylinderPatchModel
 from cadpanel.fitting.measures.deviation import deviations
 from cadpanel.fitting.measures.profiles import SeamProfile, seam_profiles
 from cadpanel.fitting.result import FitResult
+from cadpanel.geometry.drilled_mesh import drilled_mesh
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.skin_mesh import skin_mesh
 
 _NEAREST = 4
 """Samples that a vertex's deviation is taken from."""
+_NO_HOLES = np.empty((2, 0, 3, 3))
 _AT_ONE = 1e-6
 """mm: vertices this close to a sample have its deviation."""
 
@@ -65,29 +67,34 @@ class Scene:
     seams: tuple[SeamScene, ...]
 
 
-def scene_of(result: FitResult, skins: Sequence[Panel], others: Sequence[Panel]) -> Scene:
+def scene_of(
+    result: FitResult, skins: Sequence[Panel], others: Sequence[Panel], rims: Sequence[Array] | None = None
+) -> Scene:
     """What is to be seen of some panels of a fit.
 
     Args:
         result: the fit, by which deviations and seams are told.
         skins: the panels to show, as they are built, under the names that the fit knows them by.
         others: the other faces of their sheets.
+        rims: (2, h, k, 3) of each panel round its holes, on the skin and on the other face; None where there are none.
     """
+    drilled = [_NO_HOLES] * len(skins) if rims is None else rims
     places = {panel.name: place for place, panel in enumerate(result.reference.panels)}
     shown = [places[skin.name] for skin in skins]
     measured = _measured(result, shown)
     panels = []
-    for place, skin, other, (points, values) in zip(shown, skins, others, measured, strict=True):
+    for place, skin, other, own, (points, values) in zip(shown, skins, others, drilled, measured, strict=True):
         mesh = skin_mesh(skin)
+        made = drilled_mesh(mesh, skin_mesh(other).points, own)
         panels.append(
             PanelScene(
                 name=skin.name,
                 feature=skin.feature,
                 radius=_smallest_radius(skin),
-                points=mesh.points,
-                other=skin_mesh(other).points,
-                triangles=mesh.triangles,
-                deviation=_between(mesh.points, points, values),
+                points=made.points,
+                other=made.other,
+                triangles=made.triangles,
+                deviation=_between(made.points, points, values),
                 ghost=ghost(result.reference.panels[place], mesh),
             )
         )

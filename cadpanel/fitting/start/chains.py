@@ -15,9 +15,10 @@ from cadpanel.errors import PanelError
 from cadpanel.features.feature import Feature
 from cadpanel.features.patches import DIMENSIONS
 from cadpanel.features.walk import walk
-from cadpanel.fitting.samples import SampleArrays
+from cadpanel.fitting.start.axes import turning_axes
+from cadpanel.fitting.start.cone_strips import bends_in_cones, cone_strips
 from cadpanel.fitting.start.frames import Frames, Given, reframe
-from cadpanel.fitting.start.segmentation import ambiguous, cut_profile, without_blemishes
+from cadpanel.fitting.start.segmentation import ambiguous, curved_runs, cut_profile, without_blemishes
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
 from cadpanel.reference.strip import end_planes
@@ -31,8 +32,6 @@ _PLACES = 65
 _LEAST_FOLD = np.radians(2.0)
 # Half angles of the start stay below this, radians; the ends' widths tell them only roughly.
 _STEEPEST = 0.3
-# The direction in which the normals turn least is the axis, unless it is further off the way from end to end than this.
-_ASTRAY = np.cos(np.radians(40.0))
 
 
 def _check(panels: Sequence[PanelReference], source: str, feature: Feature) -> None:
@@ -63,20 +62,24 @@ class _Ends:
 
 
 def start_chains(feature: Feature, given: Given) -> Frames:
-    """Frames and all numbers of chains, cut in another way, too, where their curved patches follow each other.
+    """Frames and all numbers of chains; where their curved patches follow each other, in two ways.
+
+    The other way are cones along a developable strip, see `cone_strips`, or where there is none, even parts.
 
     Raises:
         PanelError: a panel has no fold, or not the four corners, that its feature asks for.
     """
     panels, length = given.panels, given.length
     _check(panels, given.source, feature)
-    axis = _axes(panels, given.samples)
+    axis = turning_axes(panels, given.samples)
     whole = np.array([panel.corners for panel in panels])
     found: Frames | None = None
     for way in range(given.ways if ambiguous(feature.curved) else 1):
         origins, axes, values = _roll(
             _cut_ends(panels, feature, axis, given.stretches, even=way > 0), panels, feature, length
         )
+        if way > 0 and bends_in_cones(feature):
+            _lay_cones(feature, given, axis, (origins, axes, values))
         if found is None:
             found = Frames(origins, axes, [])
         else:
@@ -113,6 +116,18 @@ def _roll(ends: _Ends, panels: Sequence[PanelReference], feature: Feature, lengt
     return origins, axes, values
 
 
+def _lay_cones(feature: Feature, given: Given, axis: Array, rolled: tuple[Array, Array, Array]) -> None:
+    """Put cones along a strip in the place of what was rolled between the ends, where a panel has such cones."""
+    origins, axes, values = rolled
+    (run,) = curved_runs(feature.curved)
+    for i, cones in enumerate(cone_strips(feature, given, axis)):
+        if cones is None:
+            continue
+        origins[i], axes[i] = cones.origin, cones.axes
+        for patch, own in zip(range(*run), cones.dimensions / np.array([given.length, 1.0, 1.0]), strict=True):
+            values[i, feature.patch_slice(patch)] = _numbers_for(feature, patch, own[None], given.panels[i : i + 1])[0]
+
+
 def _numbers_for(feature: Feature, patch: int, dimensions: Array, panels: Sequence[PanelReference]) -> Array:
     """(n, numbers) the numbers of one patch with these dimensions (n, d).
 
@@ -138,22 +153,6 @@ def _held(feature: Feature, values: Array) -> Array:
     """The values with fixed and tied numbers in their places, and the others within their bounds."""
     unknowns = np.clip(values[:, feature.free], *feature.bounds())
     return feature.expand(unknowns)
-
-
-def _axes(panels: Sequence[PanelReference], samples: SampleArrays) -> Array:
-    """(n, 3) the direction about which the normals turn: that in which they spread least.
-
-    On a cone and on the planes tangent to it all normals enclose one angle with the axis, so that it is exact there.
-    """
-    corners = np.array([panel.corners for panel in panels])
-    chord = _unit((corners[:, 1] - corners[:, 0]).mean(axis=1))
-    weights = samples.weights / samples.weights.sum(axis=1, keepdims=True)
-    off = samples.normals - np.einsum("pm,pmx->px", weights, samples.normals)[:, None]
-    _, directions = np.linalg.eigh(np.einsum("pm,pmx,pmy->pxy", weights, off, off))
-    least = directions[:, :, 0]
-    least = least * np.where(dot(least, chord) < 0.0, -1.0, 1.0)[:, None]
-    astray = dot(least, chord) < _ASTRAY
-    return np.where(astray[:, None], chord, least)
 
 
 def _cut_ends(

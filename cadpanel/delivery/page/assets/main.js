@@ -120,17 +120,31 @@ function buildToolbar() {
 }
 
 function listen() {
-  const cut = () => {
-    const axis = get("axis").value;
-    get("cut").disabled = axis === "";
-    stage.cutAt(axis === "" ? null : Number(axis), Number(get("cut").value) / 1000);
-  };
+  // What is shown along each axis, in thousandths: a box that is cut out by choosing one axis after the other.
+  const whole = () => [[0, 1000], [0, 1000], [0, 1000]];
+  const ends = ["cut-from", "cut"].map(get);
+  let box = whole();
+  const cut = () => stage.cutTo(box.map((range) => range.map((end) => end / 1000)));
   get("apart").addEventListener("input", () => {
     stage.moveApart(Number(get("apart").value) / 100);
     cut();
   });
-  get("axis").addEventListener("change", cut);
-  get("cut").addEventListener("input", cut);
+  get("axis").addEventListener("change", () => {
+    const axis = get("axis").value;
+    ends.forEach((end) => { end.disabled = axis === ""; });
+    if (axis === "") box = whole();
+    else {
+      if (box[axis].join() === "0,1000") box[axis] = [0, 500];
+      ends.forEach((end, k) => { end.value = box[axis][k]; });
+    }
+    cut();
+  });
+  ends.forEach((end, k) => end.addEventListener("input", () => {
+    const range = box[get("axis").value];
+    range[k] = k ? Math.max(Number(end.value), range[0]) : Math.min(Number(end.value), range[1]);
+    end.value = range[k];
+    cut();
+  }));
   get("ghost").addEventListener("change", () => stage.showGhost(get("ghost").checked));
   const { canvas } = stage;
   let pressed = null;
@@ -185,5 +199,6 @@ window.cadpanel = {
   choose: (name) => choose([...model.panels, ...model.seams].find((thing) => thing.name === name) ?? null),
   placeOf: (name) => picker.placeOf([...model.panels, ...model.seams].find((thing) => thing.name === name)),
   drawCalls: () => stage.renderer.info.render.calls,
+  frames: () => stage.renderer.info.render.frame,
 };
 document.body.dataset.ready = "true";

@@ -18,7 +18,7 @@ class Picker {
   }
 
   panelAt(ray) {
-    const { model, sheets, section } = this.stage;
+    const { model, sheets } = this.stage;
     const points = sheets.geometry.attributes.position.array;
     const corner = [0, 1, 2].map(() => new THREE.Vector3());
     const found = new THREE.Vector3();
@@ -30,7 +30,7 @@ class Picker {
       for (let i = 0; i < triangles.length; i += 3) {
         corner.forEach((vector, k) => vector.fromArray(points, 3 * (panel.first + triangles[i + k])));
         if (!ray.intersectTriangle(...corner, false, found)) continue;
-        if (section && section.distanceToPoint(found) < 0) continue;
+        if (this.stage.hides(found)) continue;
         const distance = found.distanceTo(ray.origin);
         if (!nearest || distance < nearest.distance) nearest = { panel, distance };
       }
@@ -40,14 +40,14 @@ class Picker {
 
   // The closest seam within a few pixels that does not lie behind the panel in front.
   seamAt(x, y, depth) {
-    const { model, section } = this.stage;
+    const { model } = this.stage;
     let nearest = null;
     for (const seam of model.seams) {
       const shift = this.stage.shiftOfSeam(seam);
       let before = null;
       for (let i = 0; i < seam.points.length; i += 3) {
         const place = new THREE.Vector3(...[0, 1, 2].map((k) => seam.points[i + k] - model.box.middle[k] + shift[k]));
-        const hidden = section && section.distanceToPoint(place) < 0;
+        const hidden = this.stage.hides(place);
         const distance = place.distanceTo(this.stage.camera.position);
         const here = hidden || distance > depth * 1.01 ? null : this.onCanvas(place);
         if (before && here) {

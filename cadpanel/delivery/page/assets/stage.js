@@ -23,7 +23,7 @@ class Stage {
     this.covered = 0;
     this.middle = new THREE.Vector3(...model.box.middle);
     this.apart = 0;
-    this.section = null;
+    this.sections = [];
     this.chosen = null;
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -235,19 +235,29 @@ class Stage {
     this.mark(this.chosen);
   }
 
-  // Nothing is drawn beyond a plane square to an axis, at a share of the way along it.
-  cutAt(axis, share) {
-    if (axis === null) this.section = null;
-    else {
-      const normal = [0, 0, 0];
-      normal[axis] = -1;
+  // Only what lies in a box is drawn: a range for each axis, as shares of the way along it.
+  cutTo(box) {
+    this.sections = [];
+    box.forEach(([from, to], axis) => {
       const reach = (1 + this.apart) * (this.model.box.high[axis] - this.model.box.low[axis]);
-      this.section = new THREE.Plane(new THREE.Vector3(...normal), (share - 0.5) * 1.02 * reach);
-    }
-    this.renderer.clippingPlanes = this.section ? [this.section] : [];
-    this.sheets.material.side = this.section ? THREE.DoubleSide : THREE.FrontSide;
+      const beyond = (share, side) => {
+        const normal = [0, 0, 0];
+        normal[axis] = side;
+        this.sections.push(new THREE.Plane(new THREE.Vector3(...normal), -side * (share - 0.5) * 1.02 * reach));
+      };
+      if (from > 0) beyond(from, 1);
+      if (to < 1) beyond(to, -1);
+    });
+    const open = this.sections.length > 0;
+    this.renderer.clippingPlanes = this.sections;
+    this.sheets.material.side = open ? THREE.DoubleSide : THREE.FrontSide;
     this.sheets.material.needsUpdate = true;
     this.draw();
+  }
+
+  // Whether a place is cut away.
+  hides(place) {
+    return this.sections.some((section) => section.distanceToPoint(place) < 0);
   }
 
   // Lines round a panel or along a seam.

@@ -11,7 +11,7 @@ from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents, Proof
-from cadpanel.delivery.manifest import MANIFEST, changed_files
+from cadpanel.delivery.manifest import MANIFEST, changed_files, unlisted_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.own_files import REPORT
@@ -77,7 +77,12 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
-    failures = (*_changed(place), *certificate.failures, *check_report(report, shapes, certificate))
+    failures = (
+        *_changed(place),
+        *_unlisted(place, outputs),
+        *certificate.failures,
+        *check_report(report, shapes, certificate),
+    )
     if reference is None:
         return Verification(
             report=report,
@@ -94,6 +99,14 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
 def _changed(place: Path) -> Iterator[str]:
     for name in changed_files(place):
         yield f"'{name}' is not the file that was delivered: its size or SHA-256 is not that in {MANIFEST}."
+
+
+def _unlisted(place: Path, outputs: Sequence[Output]) -> Iterator[str]:
+    """What is said of files of the delivery that its manifest leaves out; others may have put theirs beside them."""
+    own = {REPORT, *(name for output in outputs for name in (*output.files, *output.folders))}
+    for name in unlisted_files(place):
+        if name.split("/", maxsplit=1)[0] in own:
+            yield f"{MANIFEST} does not tell of '{name}', which belongs to the delivery."
 
 
 def _demand_files(place: Path, names: Sequence[str]) -> None:

@@ -1,7 +1,7 @@
-"""Linear algebra on one thread: what is solved here is many small matrices, and threads that wait for each other spin.
+"""Linear algebra on one thread: matrices here are many and small, and threads that wait for each other spin.
 
-A band matrix of 64 panels takes one thread a millisecond; two on a busy machine took 200. Sums besides come out the same
-to the last bit on machines of one core and of many.
+A band matrix of 64 panels takes one thread a millisecond; two on a busy machine took 200. Besides, sums come out the
+same to the last bit on machines of one core and of many.
 """
 
 from __future__ import annotations

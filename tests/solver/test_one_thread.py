@@ -6,7 +6,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from cadpanel.arrays import Array
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.one_thread import on_one_thread
-from tests.solver.models import side_by_side
+from tests.solver.test_levenberg_marquardt import side_by_side
 
 
 def threads() -> set[int]:

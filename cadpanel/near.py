@@ -37,7 +37,7 @@ def panel_named(name: str, panels: Sequence[Panel]) -> Panel:
 
 def holds(thing: object, panels: Sequence[Named]) -> bool:
     """Whether a panel, or one of that name, is among some."""
-    return any(panel is thing or panel.name == thing for panel in panels)
+    return any(panel is thing or (isinstance(thing, str) and panel.name == thing) for panel in panels)
 
 
 def near_names(name: str, names: Iterable[str]) -> str:

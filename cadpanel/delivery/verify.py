@@ -46,6 +46,10 @@ class Verification:
     failures: tuple[str, ...]
     unproved: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        found = "everything holds" if self.holds else f"{len(self.failures)} failures, first {self.failures[0]:.80}"
+        return f"<Verification of {len(self.report.panels)} panels: {found}>"
+
     @property
     def holds(self) -> bool:
         """Whether the files are what the report promises."""

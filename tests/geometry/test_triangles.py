@@ -1,5 +1,7 @@
 """Surfaces of triangles: what lies together is one, closed is closed, and the volume is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,11 @@ def test_a_cube_has_its_volume_and_turned_inside_out_the_negative_one():
     inside_out = Triangles(points=cube().points, normals=cube().normals, corners=cube().corners[:, ::-1])
     assert abs(cube().volume()) == pytest.approx(8.0, rel=1e-12)
     assert inside_out.volume() == pytest.approx(-cube().volume())
+
+
+def test_far_from_the_origin_a_cube_has_the_same_volume():
+    far = replace(cube(), points=cube().points + 1e7)
+    assert far.volume() == pytest.approx(cube().volume(), rel=1e-6)
 
 
 def test_corners_that_lie_together_become_one_in_the_order_in_which_they_come():

@@ -106,6 +106,25 @@ def test_opposite_of_a_line_a_triangle_lies_between_two_cones():
         assert surface.pieces[1].shares[0, apexes[0] ^ 1] == pytest.approx(0.5, abs=1e-6)
 
 
+def test_a_quarter_of_a_rounded_rectangle_and_of_a_circle_are_spanned_by_triangles_and_a_cone():
+    """The lines begin and end along the circle's tangents there, so that the rulings between the ends have no warp."""
+
+    def arc(x, y, radius, z):
+        w, (u, v) = 0.5**0.5, (x + radius, y + radius)
+        poles = np.array([[u, y, z, 1.0], [w * u, w * v, w * z, w], [x, v, z, 1.0]])
+        return Stretch(2, np.repeat([0.0, 1.0], 3), poles)
+
+    lines = [
+        stretch_through(np.array(ends)) for ends in ([[400.0, 0, 0], [400, 200, 0]], [[300, 300, 0], [0, 300, 0.0]])
+    ]
+    low = chained("low", [lines[0], arc(300.0, 200.0, 100.0, 0.0), lines[1]])
+    surface = loft(chained("high", [arc(0.0, 0.0, 300.0, 300.0)]), low)
+    assert [piece.apex for piece in surface.pieces] == [0, None, 0]
+    assert surface.pieces[0].shares[1, 1] == pytest.approx(200.0 / low.length, abs=1e-6)
+    assert surface.exact
+    assert surface.max_warp < WARP
+
+
 CUSP = BSpline(np.repeat([0.0, 1.0], 4), np.array([[0.0, 0, 0], [900, 400, 0], [0, 400, 0], [900, 0, 0]]), 3)
 AXIS = np.array([[0.0, 0.0, 0.0], [900.0, 0.0, 0.0]])
 

@@ -27,6 +27,7 @@ from cadpanel.delivery.records.to_shape import unfolded_rulings
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.sheet_checks import sheet_depth
 from cadpanel.geometry.trays import TrayShape
+from cadpanel.geometry.volume import beyond_quadratic
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +65,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
             corners=np.array(panel.corners),
             far_planes=_far_planes(panel, depth),
             fitted=_fitted(panel),
-            flat=_expected_flat(part, depth, tray),
+            flat=_expected_flat(shape, part, depth, tray),
             said=said,
             said_of_skin=said_of_skin,
             placed=contents.placed,
@@ -113,10 +114,11 @@ def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
         yield from frame_faults(folder / file, title, parts, contents.sheet.schema, who)
 
 
-def _expected_flat(part: FlatPart, depth: float, tray: TrayShape | None) -> ExpectedFlat:
+def _expected_flat(shape: Panel, part: FlatPart, depth: float, tray: TrayShape | None) -> ExpectedFlat:
     holes = 0.0 if part.fixings is None else part.fixings.area
     area, pieces = part.size.area - holes, part.skin_pieces
-    return ExpectedFlat(area=area, share=part.share, depth=depth, skin_pieces=pieces, tray=tray)
+    beyond = beyond_quadratic(shape, depth, part.share)
+    return ExpectedFlat(area=area, share=part.share, depth=depth, skin_pieces=pieces, tray=tray, beyond=beyond)
 
 
 def _expected_holes(part: FlatPart, depth: float) -> ExpectedHoles | None:

@@ -7,18 +7,19 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.features.rulings import PanelFeature, Walk
 from cadpanel.geometry.frames import point_velocity
-from cadpanel.geometry.vectors import cross, dot
+from cadpanel.geometry.vectors import beside, cross, dot
 
 
 def cut_planes(walked: Walk) -> tuple[Array, Array]:
     """The cut planes m . x = s: m (panels, ends, 3), not of unit length, and s (panels, ends)."""
     feature = walked.feature
     cuts = walked.values[:, feature.cut_numbers]
-    m = np.stack([cuts[..., 1], np.ones_like(cuts[..., 0]), cuts[..., 2]], axis=-1)
+    m = np.ones(cuts.shape)
+    m[..., 0], m[..., 2] = cuts[..., 1], cuts[..., 2]
     if not carried(feature):
         return m, cuts[..., 0]
     anchor = walked.anchor
-    m = m @ np.stack([anchor.b[:, 0], anchor.t[:, 0], anchor.n[:, 0]], axis=1)
+    m = m @ beside([anchor.b[:, 0], anchor.t[:, 0], anchor.n[:, 0]])
     return m, cuts[..., 0] + dot(m, anchor.p)
 
 

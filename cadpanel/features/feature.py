@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from typing import Self, get_args
 
@@ -108,7 +109,7 @@ class Feature:
         if len(patches) > 1 and not curved:
             raise SettingsError(f"the {len(patches)} planes of '{self.name}' are one, as nothing bends between them")
 
-    @property
+    @cached_property
     def curved(self) -> tuple[bool, ...]:
         """For each patch whether it is a cone or cylinder."""
         return tuple(patch.kind != "plane" for patch in self.patches)

@@ -16,7 +16,7 @@ from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import Dimensions
 from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk
 from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
-from cadpanel.geometry.vectors import cross, dot
+from cadpanel.geometry.vectors import beside, cross, dot
 
 # Panels differentiated together: what is needed on the way stays in the processor's cache and off the system's memory.
 _CHUNK = 256
@@ -108,7 +108,7 @@ def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
     panels = len(values)
     shift, turn = values[:, :2], values[:, 2:5]
     rotation = cayley(turn)
-    p = np.stack([shift[:, 0], np.zeros(panels), shift[:, 1]], axis=-1)
+    p = beside([shift[:, 0], np.zeros(panels), shift[:, 1]])
     frames = Frames(p, rotation[:, :, 0], rotation[:, :, 1], rotation[:, :, 2])
     if not derivatives:
         return _Step(frames, None)
@@ -123,9 +123,9 @@ def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
 
 
 def _stack(steps: list[_Step]) -> Rulings:
-    p, b, t, n = (np.stack([getattr(step.frames, axis) for step in steps], axis=1) for axis in "pbtn")
+    p, b, t, n = (beside([getattr(step.frames, axis) for step in steps]) for axis in "pbtn")
     twists = [step.twist for step in steps if step.twist is not None]
-    return Rulings(p, b, t, n, np.stack(twists, axis=1) if twists else None)
+    return Rulings(p, b, t, n, beside(twists) if twists else None)
 
 
 def _none(like: Walk) -> Rulings:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 from cadpanel.arrays import Array
 from cadpanel.features.rulings import PanelFeature
@@ -14,6 +15,7 @@ from cadpanel.fitting.methods.catalogue import LOCAL, method_for
 from cadpanel.fitting.methods.concurrent import Concurrent
 from cadpanel.fitting.methods.local import fit_local, refuse_hopeless
 from cadpanel.fitting.methods.method import Fitted, Method
+from cadpanel.fitting.methods.method import Progress as Told
 from cadpanel.fitting.methods.trial import Trial
 from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.result import FitResult, Progress
@@ -23,6 +25,7 @@ from cadpanel.fitting.settling import settle
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.geometry.panel import Panel
 from cadpanel.reference.model import Reference
+from cadpanel.solver.stop import Stop
 
 
 class Attempts:
@@ -70,22 +73,22 @@ class Attempts:
             return self._together(problem, begin, Concurrent(goes_on=True), rules)
         return self._together(problem, [alone.unknowns, *starts], method_for(self.settings), rules)
 
-    def fit_together(self, problem: Problem, alone: Array) -> FitResult:
-        """Fit panels whose local fits (panels, size) are known.
+    def fit_together(self, problem: Problem, alone: Array, steps: int | None = None) -> FitResult:
+        """Fit panels whose local fits (panels, size) are known, in so many steps at most if it goes step by step.
 
         Raises:
             PanelError: a panel's local fit is no approximation of it.
         """
         refuse_hopeless(problem, self.reference, alone)
-        return self._together(problem, [alone], method_for(self.settings))
+        return self._together(problem, [alone], method_for(self.settings), steps=steps)
 
-    def try_together(self, problem: Problem, alone: Array, *, closing: bool = False) -> FitResult:
+    def try_together(self, problem: Problem, alone: Array, steps: int | None = None) -> FitResult:
         """Show whether the features of panels whose local fits (panels, size) are known will do.
 
         Args:
             problem: the panels.
             alone: their local fits.
-            closing: tighten seams even where panels deviate too far already.
+            steps: how many may be spent on it; as many as it takes if not given.
 
         Raises:
             PanelError: a panel's local fit is no approximation of it.
@@ -93,14 +96,27 @@ class Attempts:
         refuse_hopeless(problem, self.reference, alone)
         method = method_for(self.settings)
         if method == Concurrent():
-            method = Trial((lambda _: False) if closing else self._too_far)
+            method = Trial(self._too_far, steps)
         return self._together(problem, [alone], method)
 
+    def closed(self, problem: Problem, alone: Array, tried: FitResult, steps: int) -> FitResult:
+        """Go on with a trial whose seams were left open between the points at which they are held."""
+        found = Trial(lambda _: False, steps, goes_on=True).fit(problem, [tried.unknowns], self.settings, self._tell)
+        return self._result(problem, alone, replace(found, iterations=tried.iterations + found.iterations))
+
     def _together(
-        self, problem: Problem, begin: Sequence[Array], method: Method, rules: tuple[Posed, ...] = ()
+        self,
+        problem: Problem,
+        begin: Sequence[Array],
+        method: Method,
+        rules: tuple[Posed, ...] = (),
+        steps: int | None = None,
     ) -> FitResult:
         posed = problem.ruled(rules) if rules else problem
-        fitted = method.fit(posed, begin, self.settings, self._tell)
+        told = self._tell if steps is None else _AtMost(steps, self._tell)
+        fitted = method.fit(posed, begin, self.settings, told)
+        if fitted.stopped is Stop.TOLD and not self.over:
+            fitted = replace(fitted, stopped=Stop.STEP_LIMIT)
         if rules and not self.over:
             fitted = settle(posed, fitted, begin, self.settings, self._tell)
         return self._result(problem, begin[0], fitted, rules)
@@ -140,3 +156,14 @@ class Attempts:
             self.over |= answer is not None and not answer
         self.over |= self._deadline is not None and time.perf_counter() > self._deadline
         return not self.over
+
+
+class _AtMost:
+    """Ends what tells of its steps after so many of them."""
+
+    def __init__(self, steps: int, tell: Told) -> None:
+        self._left, self._tell = steps, tell
+
+    def __call__(self, step: int, excess: float, rms: float) -> bool:
+        self._left -= 1
+        return self._tell(step, excess, rms) and self._left > 0

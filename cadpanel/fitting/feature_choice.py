@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from cadpanel.arrays import Array, IntArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.errors import PanelError
 from cadpanel.features.catalogue import POLYGON, for_corners
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import PanelFeature
+from cadpanel.fitting.effort import Effort
 from cadpanel.fitting.measures.fit import largest_deviations
+from cadpanel.fitting.methods.holding import EXACT
 from cadpanel.fitting.methods.local import Local
 from cadpanel.fitting.problem import pose, unit_length
 from cadpanel.fitting.settings import FitSettings
@@ -33,6 +35,11 @@ CHEAPEST_FIRST = (
 """What a shop makes with less work comes first: flat sheet, one roll, one tapered roll, folds, double folds."""
 
 
+COMMON = CHEAPEST_FIRST.index("plane-cone-plane")
+"""The place of the feature that lips are fitted with where none is asked for."""
+
+# A feature that is this much farther off, a share, is as close to a panel as another.
+_AS_CLOSE = 1e-6
 # Neighbours of different features are held together from here within a few steps or not at all, so the fits alone are
 # brought to rest more closely than for others: see `fitting.methods.local`.
 _SETTLED = 1e-5
@@ -44,7 +51,9 @@ class Choice:
     Attributes:
         deviations: (panels, features) largest deviation of each panel fitted alone, mm; infinite where the feature does
             not suit the panel.
+        rms: (panels, features) the RMS deviation likewise.
         chosen: (panels,) index into CHEAPEST_FIRST.
+        effort: what the fits of single panels took, and may take.
     """
 
     def __init__(self, reference: Reference, settings: FitSettings) -> None:
@@ -56,6 +65,8 @@ class Choice:
         self._alone: dict[tuple[int, int], Array] = {}
         panels = len(reference.panels)
         self.deviations = np.full((panels, len(CHEAPEST_FIRST)), np.inf)
+        self.rms = self.deviations.copy()
+        self.effort = Effort()
         self._tried = np.zeros(self.deviations.shape, dtype=bool)
         self.chosen = np.zeros(panels, dtype=np.intp)
         waiting = np.arange(panels)
@@ -97,8 +108,7 @@ class Choice:
         for place in range(1, len(CHEAPEST_FIRST)):
             asked = waiting[self.chosen[waiting] < place]
             self._try(place, asked[~self._tried[asked, place]])
-            # A feature that is no closer alone will be no closer among its neighbours.
-            closer = asked[self.deviations[asked, place] < self.deviations[asked, self.chosen[asked]]]
+            closer = asked[self._follows(asked, place)]
             self.chosen[closer] = place
             waiting = np.setdiff1d(waiting, closer)
             changed |= len(closer) > 0
@@ -110,13 +120,29 @@ class Choice:
         Returns:
             whether each of them has another one.
         """
-        self.deviations[panels, self.chosen[panels]] = np.inf
+        self.deviations[panels, self.chosen[panels]] = self.rms[panels, self.chosen[panels]] = np.inf
         for panel in panels.tolist():
             for place in np.flatnonzero(~self._tried[panel]).tolist():
                 if self.deviations[panel].min() > self._largest:
                     self._try(place, np.array([panel]))
         self.chosen[panels] = self._first_within(self.deviations[panels])
         return bool(np.isfinite(self.deviations[panels, self.chosen[panels]]).all())
+
+    def _follows(self, panels: IntArray, place: int) -> BoolArray:
+        """(n,) which of some panels a feature may follow better than the one that they have.
+
+        One that is no closer alone, RMS as it was fitted, will be no closer among its neighbours. One that is as close
+        may be: a cone can do all that a cylinder does.
+        """
+        mine, its = (self.rms[panels, of] for of in (self.chosen[panels], place))
+        near = self.deviations[panels, place] <= np.maximum(self.deviations[panels, self.chosen[panels]], self._largest)
+        return np.asarray(near & np.isfinite(its) & (its <= mine * (1.0 + _AS_CLOSE) + EXACT * self._length))
+
+    def common(self) -> IntArray:
+        """(panels,) the place of `COMMON`, or of what is chosen where that does not suit a panel."""
+        missing = np.flatnonzero(~self._tried[:, COMMON])
+        self._try(COMMON, missing)
+        return np.where(np.isfinite(self.deviations[:, COMMON]), COMMON, self.chosen)
 
     def _first_within(self, deviations: Array) -> IntArray:
         within = deviations <= self._largest
@@ -139,7 +165,9 @@ class Choice:
         found = Local(settled=_SETTLED).fit(problem, starts, self._settings)
         for i, row, feature in zip(suited, found.unknowns, problem.layout.feature_of, strict=True):
             self._alone[i, place] = row[: len(feature.free)]
+        self.effort.spend(problem, found.iterations)
         self.deviations[suited, place] = largest_deviations(panel_shapes(problem, found.unknowns), part)
+        self.rms[suited, place] = problem.deviations(found.unknowns)[0]
 
     def _suits(self, panel: PanelReference, place: int) -> bool:
         if CHEAPEST_FIRST[place] == POLYGON:

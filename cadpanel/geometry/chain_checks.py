@@ -16,6 +16,7 @@ from cadpanel.geometry.cone_sections import AxisFrame, ConeCut, axis_frame, cut_
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import end_spans, side_curves
 from cadpanel.geometry.self_crossing import crosses_itself
 
 SMALLEST_RADIUS = 0.1
@@ -33,6 +34,8 @@ POINT_TOLERANCE = 1e-8
 """How far from the next ruling, in mm, a patch may end."""
 
 _ENDS = ("start", "far end")
+# Places along a side that stands in a plane at which that must be found.
+_SHARES = np.linspace(0.0, 1.0, 9)
 
 
 def check_chain(shape: Chain) -> None:
@@ -179,6 +182,7 @@ def _own_radii(frame: AxisFrame, cut_frame: AxisFrame, cut: ConeCut) -> list[flo
 def _check_face(shape: Chain, where: str) -> None:
     """Everything that depends on the trimmed face: cuts, apex, lengths and widths."""
     _check_rulings(shape, where)
+    _check_sides(shape, where)
     corners = shape.corners()
     if np.abs(corners).max() > LARGEST_COORDINATE:
         raise PanelError(
@@ -222,6 +226,24 @@ def _check_rulings(shape: Chain, where: str) -> None:
             f"ruling {int(ruling) + 1} runs at {angle:.4g} degrees to the cut plane at the {_ENDS[end]}{where}, nearly "
             f"parallel; {math.degrees(math.asin(SMALLEST_CUT_COSINE)):.4g} are needed: divide the panel "
             "further, or choose another feature.",
+        )
+
+
+def _check_sides(shape: Chain, where: str) -> None:
+    """The planes in which sides stand must leave something of the patches between them, at both ends."""
+    if shape.side_planes == (None, None):
+        return
+    spans, sides = end_spans(shape), [curve for curve in side_curves(shape) if curve is not None]
+    round_ones = [index for index, patch in enumerate(shape.patches) if isinstance(patch, ConePatch)]
+    ways = [np.sign(patch.sweep) for patch in shape.patches if isinstance(patch, ConePatch)]
+    left = (spans[:, round_ones, 1] - spans[:, round_ones, 0]) * np.array(ways)
+    heights = np.concatenate([curve.heights[0] + np.diff(curve.heights) * _SHARES for curve in sides])
+    angles = np.concatenate([curve.angles(heights) for curve in sides])
+    if left.min() <= 0.0 or not np.isfinite(angles).all():
+        raise PanelError(
+            shape.name,
+            f"nothing is left of it between the walls at its sides{where}: ask for a narrower joint, or divide the "
+            "reference into fewer panels.",
         )
 
 

@@ -2,8 +2,9 @@
 
 A flat patch ends on any plane in a straight line, and so does the parallel patch on the sheet's other face: its wall
 may lean as the plane does. So may the wall at the side of a cylinder, as far as the plane leans about the axis. A plane
-that leans meets two parallel cones in no two rulings of theirs, so the side of a cone stays square to the sheet. Either
-runs along the ruling from which it keeps behind the plane on both faces.
+that leans meets two parallel cones in no two rulings of theirs: along a ruling the side of a cone stands square to the
+sheet. Either runs along the ruling from which it keeps behind the plane on both faces. Where there is a joint, and that
+ruling would leave it wider somewhere, the side of a round patch stands in the plane itself instead.
 """
 
 from __future__ import annotations
@@ -17,10 +18,11 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
-from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, lifted
 from cadpanel.geometry.leaning_sides import may_lean, risen
 from cadpanel.geometry.panel import Chain, CutPlane
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import curve_in_plane
 from cadpanel.geometry.vectors import cross, unit
 
 SomeChain = TypeVar("SomeChain", bound=Chain)
@@ -29,6 +31,8 @@ CLOSE_TURN = 1e-14
 MOST_STEPS = 40
 FARTHEST_OUT = -0.25
 """Share of a sweep by which a side may be moved outwards, to where the panels meet."""
+AS_WIDE = 0.01
+"""By so much, mm, may a ruling leave a joint wider than the plane does."""
 
 
 def cut_chain(shape: SomeChain, planes: Mapping[str, CutPlane], depth: float) -> SomeChain:
@@ -43,8 +47,37 @@ def cut_chain(shape: SomeChain, planes: Mapping[str, CutPlane], depth: float) ->
         if plane is None:
             continue
         round_patch = isinstance(cut.patches[-side], ConePatch)
-        cut = _along_a_ruling(cut, side, plane, depth) if round_patch else _leaning(cut, side, plane)
+        cut = _beside_a_cone(cut, side, plane, depth) if round_patch else _leaning(cut, side, plane)
     return cut
+
+
+def _beside_a_cone(shape: SomeChain, side: int, plane: CutPlane, depth: float) -> SomeChain:
+    """The side of a round patch along a ruling, or in the plane where that leaves a joint wider than it should be."""
+    ruled = _along_a_ruling(shape, side, plane, depth)
+    if not plane.jointed:
+        return ruled
+    corners = [face.corners()[:, -side] for face in (ruled, ruled.offset(depth))]
+    if max(float(-plane.beyond(of).min()) for of in corners) <= AS_WIDE:
+        return ruled
+    return side_in_plane(shape, side, plane, depth)
+
+
+def side_in_plane(shape: SomeChain, side: int, plane: CutPlane, depth: float) -> SomeChain:
+    """The side of a round patch in a plane, its ruling that through the outermost of its four corners.
+
+    Raises:
+        PanelError: the plane misses its side.
+    """
+    index = 0 if side == 0 else len(shape.patches) - 1
+    patch = shape.patches[index]
+    assert isinstance(patch, ConePatch)
+    frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
+    faces = [curve_in_plane(shape, of, side, plane) for of in (frame, lifted(frame, depth))]
+    shares = np.concatenate([curve.corners for curve in faces]) / patch.sweep
+    share = float((1.0 - shares).min() if side else shares.min())
+    if not FARTHEST_OUT < share < 1.0:
+        raise PanelError(shape.name, _too_far(side))
+    return _cut_off(shape, frame, side, share).walled(side, plane)
 
 
 def _with_ends(shape: SomeChain, planes: Mapping[str, CutPlane]) -> SomeChain:
@@ -97,18 +130,26 @@ def _along_a_ruling(shape: SomeChain, side: int, plane: CutPlane, depth: float) 
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     level = _level(frame, plane) if may_lean(patch) else None
     share = _share_cut_off(shape, frame, side, plane, depth, level)
-    points, directions, normals = shape.points.copy(), shape.directions.copy(), shape.normals.copy()
-    angle = patch.sweep * (share if side == 0 else 1.0 - share)
-    turned = _rulings(frame, np.array([angle]))
-    points[-side], directions[-side], normals[-side] = turned.points[0], turned.directions[0], turned.normals[0]
-    shorter = replace(patch, sweep=patch.sweep * (1.0 - share))
-    patches = (*shape.patches[:index], shorter, *shape.patches[index + 1 :])
-    moved = shape.rewalked(points, directions, normals, patches)
+    moved = _cut_off(shape, frame, side, share)
     if level is None:
         return moved
     leans = shape.side_leans.copy()
-    leans[side] = _leans(turned, level)[0]
+    ruling = _Ruling(moved.points[[-side]], moved.directions[[-side]], moved.normals[[-side]])
+    leans[side] = _leans(ruling, level)[0]
     return moved.trimmed(shape.cut_points, shape.cut_normals, leans)
+
+
+def _cut_off(shape: SomeChain, frame: AxisFrame, side: int, share: float) -> SomeChain:
+    """The chain without a share of the sweep of the round patch at a side."""
+    index = 0 if side == 0 else len(shape.patches) - 1
+    patch = shape.patches[index]
+    assert isinstance(patch, ConePatch)
+    points, directions, normals = shape.points.copy(), shape.directions.copy(), shape.normals.copy()
+    turned = _rulings(frame, np.array([patch.sweep * (share if side == 0 else 1.0 - share)]))
+    points[-side], directions[-side], normals[-side] = turned.points[0], turned.directions[0], turned.normals[0]
+    shorter = replace(patch, sweep=patch.sweep * (1.0 - share))
+    patches = (*shape.patches[:index], shorter, *shape.patches[index + 1 :])
+    return shape.rewalked(points, directions, normals, patches)
 
 
 def _level(frame: AxisFrame, plane: CutPlane) -> Array:
@@ -155,9 +196,12 @@ def _share_cut_off(
             break
     share = float(now.max())
     if not FARTHEST_OUT < share < 1.0:
-        raise PanelError(
-            shape.name,
-            f"its neighbour at side {side} lies too far away for a wall between the two: hold a smaller gap tolerance, "
-            "or read the reference with a smaller --seam-tolerance, so that they do not meet.",
-        )
+        raise PanelError(shape.name, _too_far(side))
     return share
+
+
+def _too_far(side: int) -> str:
+    return (
+        f"its neighbour at side {side} lies too far away for a wall between the two: hold a smaller gap tolerance, "
+        "or read the reference with a smaller --seam-tolerance, so that they do not meet."
+    )

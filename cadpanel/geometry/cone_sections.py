@@ -135,13 +135,13 @@ def cut_cone(frame: AxisFrame, cut_point: Array, cut_normal: Array) -> ConeCut:
     )
 
 
-def radius_range(cut: ConeCut, sweep: float) -> tuple[float, float]:
-    """Smallest and largest signed radius along the section while phi runs from 0 to `sweep`, mm.
+def radius_range(cut: ConeCut, sweep: float, begin: float = 0.0) -> tuple[float, float]:
+    """Smallest and largest signed radius along the section while phi runs from `begin` to `sweep`, mm.
 
     Exact: the radius is monotone in cos(phi - phase), whose extremes lie at the ends or where it is 1 or -1. Needs an
     elliptic section.
     """
-    first, last = sorted((-cut.phase, sweep - cut.phase))
+    first, last = sorted((begin - cut.phase, sweep - cut.phase))
     cosines = [math.cos(first), math.cos(last)]
     cosines += [math.cos(k * math.pi) for k in range(math.ceil(first / math.pi), math.floor(last / math.pi) + 1)]
     radii = [cut.axis_radius / (1.0 + cut.eccentricity * cosine) for cosine in cosines]
@@ -152,7 +152,8 @@ def radius_range(cut: ConeCut, sweep: float) -> tuple[float, float]:
 class EllipticSection:
     """An arc of ellipse center + cos(w) * cosine_axis + sin(w) * sine_axis for w from start to stop, start < stop.
 
-    The arc runs from ruling i to ruling i + 1. |cosine_axis| >= |sine_axis|, and the two are square to each other.
+    The arc runs from ruling i to ruling i + 1, or to a side that stands in a plane. |cosine_axis| >= |sine_axis|, and
+    the two are square to each other.
 
     Attributes:
         center: (3,) mm.
@@ -199,8 +200,8 @@ def _eccentric_anomaly(true_anomaly: float, eccentricity: float) -> float:
     return true_anomaly - 2.0 * math.atan2(beta * math.sin(true_anomaly), 1.0 + beta * math.cos(true_anomaly))
 
 
-def elliptic_section(frame: AxisFrame, cut: ConeCut) -> EllipticSection:
-    """The arc of ellipse in which the cut plane meets the patch.
+def elliptic_section(frame: AxisFrame, cut: ConeCut, span: tuple[float, float] | None = None) -> EllipticSection:
+    """The arc of ellipse in which the cut plane meets the patch, or what of it lies between the angles of a span.
 
     With x towards the phase and y square to it, seen along the axis: x^2 + y^2 = (A - B x)^2, A the axis_radius and B
     the eccentricity, hence half axes A / (1 - B^2) and A / sqrt(1 - B^2) about x = -A B / (1 - B^2).
@@ -216,8 +217,9 @@ def elliptic_section(frame: AxisFrame, cut: ConeCut) -> EllipticSection:
     in_plane = toward - slope * frame.axis
     shift = -cut.axis_radius * cut.eccentricity / flatness
     sense = 1 if frame.sweep > 0.0 else -1
-    start = sense * _eccentric_anomaly(-cut.phase, cut.eccentricity)
-    stop = sense * _eccentric_anomaly(frame.sweep - cut.phase, cut.eccentricity)
+    first, last = (0.0, frame.sweep) if span is None else span
+    start = sense * _eccentric_anomaly(first - cut.phase, cut.eccentricity)
+    stop = sense * _eccentric_anomaly(last - cut.phase, cut.eccentricity)
     whole_turns = 2.0 * math.pi * math.floor(start / (2.0 * math.pi))
     stretch = cut.axis_radius / flatness
     to_height = 1.0 / math.cos(frame.half_angle)
@@ -235,25 +237,34 @@ def elliptic_section(frame: AxisFrame, cut: ConeCut) -> EllipticSection:
     )
 
 
-def chain_arcs(rulings: tuple[Array, Array, Array], patches: Sequence[Patch], cuts: tuple[Array, Array]) -> CurvePieces:
+def chain_arcs(
+    rulings: tuple[Array, Array, Array], patches: Sequence[Patch], cuts: tuple[Array, Array], spans: Array
+) -> CurvePieces:
     """The arcs in which the planes that cut a chain's ends meet its round patches, patch by patch.
 
     Args:
         rulings: points, directions and normals (k + 1, 3).
         patches: the k patches.
         cuts: points and normals (e, 3).
+        spans: (e, k, 2) between which angles the cuts run over the patches.
 
     Raises:
         ValueError: if a section is a parabola or hyperbola.
     """
     points, directions, normals = rulings
-    frames = [
-        axis_frame(points[index], directions[index], normals[index], patch)
+    frames = {
+        index: axis_frame(points[index], directions[index], normals[index], patch)
         for index, patch in enumerate(patches)
         if isinstance(patch, ConePatch)
-    ]
-    planes = list(zip(*cuts, strict=True))
-    return as_pieces([elliptic_section(frame, cut_cone(frame, *plane)) for frame in frames for plane in planes])
+    }
+    planes = list(zip(*cuts, spans.tolist(), strict=True))
+    return as_pieces(
+        [
+            elliptic_section(frame, cut_cone(frame, point, normal), (own[index][0], own[index][1]))
+            for index, frame in frames.items()
+            for point, normal, own in planes
+        ]
+    )
 
 
 def as_pieces(sections: Sequence[EllipticSection]) -> CurvePieces:

@@ -8,7 +8,9 @@ puts it, and the point at height s along it at
 
 seen from the first ruling's point, `along` being its direction. Neither the apex nor a division by k occurs: with k = 0
 these are the formulas of the cylinder. The height at which a cut plane is met is a quotient of numbers linear in
-cos(phi) and sin(phi). Lengths are kept: ds^2 = dheight^2 + (rho + k height)^2 dphi^2, on the cone as in the plane.
+cos(phi) and sin(phi); a side that stands in a plane runs along the generatrices, nearly, and is followed by the height
+instead (see `plane_section`). Lengths are kept: ds^2 = dheight^2 + (rho + k height)^2 dphi^2, on the cone as in the
+plane.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
+from cadpanel.geometry.plane_section import PlaneSection
 from cadpanel.geometry.vectors import side_of
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
@@ -34,9 +37,11 @@ class FlatCurves:
         along: (c, 2) unit direction of that ruling.
         level_radius: (c,) rho, signed, mm.
         sine: (c,) k.
-        sweep: (c,) signed like rho; 0 for a segment.
+        first: (c,) phi where it begins, or of a side the height.
+        sweep: (c,) from there to where it ends; 0 for a segment.
         reach, rate: (c, 3) height = reach . (1, cos phi, sin phi) / rate . (1, cos phi, sin phi).
-        backward: (c,) whether u runs from the last ruling to the first.
+        backward: (c,) whether u runs from the end to the beginning.
+        way_out: (c,) of a side in a plane 1 or -1, see `PlaneSection.angles`; else 0.
     """
 
     start: Array
@@ -45,10 +50,12 @@ class FlatCurves:
     along: Array
     level_radius: Array
     sine: Array
+    first: Array
     sweep: Array
     reach: Array
     rate: Array
     backward: BoolArray
+    way_out: Array
 
     def __len__(self) -> int:
         return len(self.sweep)
@@ -64,7 +71,7 @@ class FlatCurves:
 
     def points(self, u: Array) -> Array:
         """(c, q, 2) points at the parameters u (c, q)."""
-        phi, height, _ = self._heights(u)
+        phi, height, _, _ = self._followed(u)
         theta, rho = self.sine[:, None] * phi, self.level_radius[:, None]
         across = height * np.sin(theta) + rho * phi * _sinc(theta)
         along = height * np.cos(theta) - 0.5 * rho * self.sine[:, None] * phi**2 * _sinc(0.5 * theta) ** 2
@@ -74,14 +81,15 @@ class FlatCurves:
 
     def velocities(self, u: Array) -> Array:
         """(c, q, 2) derivatives of `points` by u."""
-        phi, height, climb = self._heights(u)
+        phi, height, turn, climb = self._followed(u)
         theta = self.sine[:, None] * phi
         width = self.level_radius[:, None] + self.sine[:, None] * height
         sine, cosine = np.sin(theta), np.cos(theta)
-        rolled = _combined(self.along[:, None], climb * sine + width * cosine, climb * cosine - width * sine)
-        turn = np.where(self.backward, -self.sweep, self.sweep)[:, None, None]
+        across, along = climb * sine + turn * width * cosine, climb * cosine - turn * width * sine
+        pace = np.where(self.backward, -self.sweep, self.sweep)[:, None, None]
+        rolled = pace * _combined(self.along[:, None], across, along)
         straight = np.broadcast_to((self.stop - self.start)[:, None], rolled.shape)
-        return np.where(self.curved[:, None, None], turn * rolled, straight)
+        return np.where(self.curved[:, None, None], rolled, straight)
 
     def lengths(self) -> Array:
         """(c,) lengths, mm, to rounding error."""
@@ -98,16 +106,18 @@ class FlatCurves:
         areas: Array = 0.5 * (swept @ _WEIGHTS + side_of(np.zeros(2), self.start, self.stop))
         return areas
 
-    def _heights(self, u: Array) -> tuple[Array, Array, Array]:
-        """Sweep angles, heights along the generatrix, and their derivatives by the sweep angle, (c, q) each."""
-        phi = np.where(self.backward[:, None], 1.0 - u, u) * self.sweep[:, None]
-        cosine, sine = np.cos(phi), np.sin(phi)
-        (above, above_rate), (below, below_rate) = (
-            (of[:, :1] + of[:, 1:2] * cosine + of[:, 2:] * sine, of[:, 2:] * cosine - of[:, 1:2] * sine)
-            for of in (self.reach, self.rate)
-        )
-        height = above / below
-        return phi, height, (above_rate - height * below_rate) / below
+    def _followed(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        """Angles, heights, and the derivatives of both by what the pieces are followed by, (c, q) each."""
+        at = self.first[:, None] + np.where(self.backward[:, None], 1.0 - u, u) * self.sweep[:, None]
+        phi, (height, climb) = at, PlaneSection(reach=self.reach, rate=self.rate).heights(at)
+        turn = np.ones_like(at)
+        sides = np.flatnonzero(self.way_out)
+        if len(sides):
+            own = PlaneSection(reach=self.reach[sides], rate=self.rate[sides])
+            phi = at.copy()
+            height[sides], climb[sides] = at[sides], 1.0
+            phi[sides], turn[sides] = own.angles(at[sides], self.way_out[sides], np.zeros(len(sides)))
+        return phi, height, turn, climb
 
 
 def joined(curves: list[FlatCurves]) -> FlatCurves:
@@ -129,10 +139,12 @@ def segments(start: Array, stop: Array) -> FlatCurves:
         along=ahead,
         level_radius=none,
         sine=none,
+        first=none,
         sweep=none,
         reach=np.zeros((count, 3)),
         rate=one,
         backward=np.zeros(count, dtype=bool),
+        way_out=none,
     )
 
 

@@ -7,7 +7,7 @@ by half of the joint, so two neighbours never share volume.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cadpanel.geometry.corner_parting import Walls, part_at_corners
 from cadpanel.geometry.edge_planes import SeamEdges, farthest, seam_plane, turned_round
@@ -79,5 +79,6 @@ def walls_of(count: int, seams: Sequence[SeamEdges], planes: Sequence[CutPlane],
     walls: list[Walls] = [{} for _ in range(count)]
     for seam, plane in zip(seams, planes, strict=True):
         for panel, edge, own in zip(seam.panels, seam.edges, (plane, turned_round(plane)), strict=True):
-            walls[panel][edge] = own.moved(-0.5 * seam.width(joint))
+            width = seam.width(joint)
+            walls[panel][edge] = replace(own.moved(-0.5 * width), jointed=width > 0.0)
     return walls

@@ -26,10 +26,12 @@ class CutPlane:
     Attributes:
         point: (3,) on it, mm.
         normal: (3,) unit, out of the panel.
+        jointed: whether half of a joint lies between it and the plane of its seam.
     """
 
     point: Array
     normal: Array
+    jointed: bool = False
 
     def beyond(self, points: Array) -> Array:
         """How far points (..., 3) lie beyond it, mm (...)."""
@@ -207,15 +209,24 @@ class Chain(Protocol):
     def side_leans(self) -> Array: ...  # noqa: D102
 
     @property
+    def side_planes(self) -> tuple[CutPlane | None, CutPlane | None]: ...  # noqa: D102
+
+    @property
     def lift(self) -> float: ...  # noqa: D102
 
     def corners(self) -> Array: ...  # noqa: D102
+
+    def pierced(self) -> Array: ...  # noqa: D102
+
+    def offset(self, distance: float) -> Self: ...  # noqa: D102
 
     def binormals(self) -> Array: ...  # noqa: D102
 
     def rewalked(self, points: Array, directions: Array, normals: Array, patches: tuple[Patch, ...]) -> Self: ...  # noqa: D102
 
     def trimmed(self, cut_points: Array, cut_normals: Array, side_leans: Array) -> Self: ...  # noqa: D102
+
+    def walled(self, side: int, plane: CutPlane | None) -> Self: ...  # noqa: D102
 
     def made_square(self) -> Self: ...  # noqa: D102
 

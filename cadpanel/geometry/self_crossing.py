@@ -8,6 +8,7 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section, lifted
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import end_spans
 from cadpanel.geometry.vectors import cross
 
 ARC_POINTS = 33
@@ -17,12 +18,12 @@ ARC_POINTS = 33
 def end_polyline(shape: Chain, end: int, arc_points: int = ARC_POINTS) -> Array:
     """(m, 3) the end curve, line - conic - line, as points from the first ruling to the last, mm."""
     corners = shape.corners()[end]
-    pieces = [corners[:1]]
+    pieces, spans = [corners[:1]], end_spans(shape)[end].tolist()
     for index, patch in enumerate(shape.patches):
         if isinstance(patch, ConePatch):
             frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
             cut = lifted(frame, shape.lift)
-            section = elliptic_section(cut, cut_cone(cut, shape.cut_points[end], shape.cut_normals[end]))
+            section = elliptic_section(cut, cut_cone(cut, shape.cut_points[end], shape.cut_normals[end]), spans[index])
             parameters = np.linspace(section.start, section.stop, arc_points)[1:-1]
             back = shape.lift * frame.normals(section.sweep_angles(parameters))
             pieces.append(section.points(parameters) - back)

@@ -15,10 +15,11 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.chain_checks import check_chain, check_chain_sheet
 from cadpanel.geometry.chain_cutting import cut_chain
 from cadpanel.geometry.cone_sections import chain_arcs
-from cadpanel.geometry.curve_pieces import CurvePieces, segments
+from cadpanel.geometry.curve_pieces import CurvePieces, segments, together
 from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.panel import CutPlane, PanelEdge, Straightened
 from cadpanel.geometry.patches import Patch, PlanePatch
+from cadpanel.geometry.plane_sides import end_spans, side_curve, side_curves, side_tangents
 from cadpanel.geometry.polygon_checks import check_polygon, polygon_area
 from cadpanel.geometry.polygon_cutting import cut_polygon
 from cadpanel.geometry.slender_cones import SMALLEST_HALF_ANGLE, straighten
@@ -45,7 +46,9 @@ class PanelShape:
         cut_points: (2, 3) a point on the cut plane of end 0 and end 1, mm.
         cut_normals: (2, 3) unit normals of the cut planes, both with a positive component along t.
         side_leans: (2,) by how much the wall at either side leans along b for one mm along n; 0 where it stands square
-            to the sheet, and at the side of a cone.
+            to the sheet, at the side of a cone, and in a plane that is given.
+        side_planes: the planes in which the sides of round patches stand that follow no ruling; see `plane_sides`. The
+            ruling is then the innermost one outside of which nothing of the sheet lies.
         square: whether the walls of its sheet stand square to it; see `squared`.
         lift: where the skin that the cut planes cut lies, mm along n: elsewhere than here only on a face of a square
             sheet that is not the panel's skin. Every corner and every point of an end lies at that skin's own, along n.
@@ -60,6 +63,7 @@ class PanelShape:
     cut_points: Array
     cut_normals: Array
     side_leans: Array = field(default_factory=lambda: np.zeros(2))
+    side_planes: tuple[CutPlane | None, CutPlane | None] = (None, None)
     square: bool = False
     lift: float = 0.0
 
@@ -67,6 +71,15 @@ class PanelShape:
         return f"<PanelShape '{self.name}': {self.feature}, {len(self.patches)} patches>"
 
     def corners(self) -> Array:
+        """(2, k + 1, 3) where each ruling, or a side that stands in a plane, meets the cut planes of both ends, mm."""
+        corners = self.pierced()
+        for side in range(2):
+            curve = side_curve(self, side)
+            if curve is not None:
+                corners[:, -side] = curve.frame.points(curve.corners, curve.heights)
+        return corners
+
+    def pierced(self) -> Array:
         """(2, k + 1, 3) where each ruling pierces the cut plane of end 0 and of end 1, mm."""
         to_plane = self.cut_points[:, None, :] - (self.points + self.lift * self.normals)[None, :, :]
         height = np.einsum("erx,ex->er", to_plane, self.cut_normals)
@@ -110,12 +123,17 @@ class PanelShape:
         """The same walk between other cuts and side walls."""
         return replace(self, cut_points=cut_points, cut_normals=cut_normals, side_leans=side_leans)
 
+    def walled(self, side: int, plane: CutPlane | None) -> PanelShape:
+        """The same with a side in another plane, or, with None, along its ruling."""
+        first, last = self.side_planes
+        return replace(self, side_planes=(first, plane) if side else (plane, last))
+
     def made_square(self) -> PanelShape:
         """The same skin, with walls square to its sheet."""
         return replace(self, square=True, side_leans=np.zeros(2))
 
     def edge(self, edge: str) -> PanelEdge:
-        """See `Panel.edge`; a side is straight, an end is where all patches are flat."""
+        """See `Panel.edge`; a side is straight unless it stands in a plane, an end is where all patches are flat."""
         corners = edge_corners(self.corners(), edge)
         place = int(edge[-1])
         outward = 1.0 if place else -1.0
@@ -123,24 +141,28 @@ class PanelShape:
             flat = all(isinstance(patch, PlanePatch) for patch in self.patches)
             normal = self.normals[0] if flat else None
             return PanelEdge(corners=corners, outward=outward * self.cut_normals[place], normal=normal)
+        plane = self.side_planes[place]
+        if plane is not None:
+            return PanelEdge(corners=corners, outward=plane.normal, normal=None)
         return PanelEdge(corners=corners, outward=outward * self.binormals()[-place], normal=self.normals[-place])
 
     def arcs(self) -> CurvePieces:
-        """See `Panel.arcs`: where the cut planes meet the cones.
+        """See `Panel.arcs`: where planes meet the cones; a side's arc is told by the two tangents that it lies within.
 
         Raises:
             ValueError: the skin is the other face of a square sheet, and bends in no arcs of ellipses.
         """
         if self.lift != 0.0:
             raise ValueError(f"panel '{self.name}': the other face of a square sheet ends in no arcs of ellipses")
-        return chain_arcs(self.rulings(), self.patches, self.cuts())
+        ends = chain_arcs(self.rulings(), self.patches, self.cuts(), end_spans(self))
+        return together([ends, *(side_tangents(curve) for curve in side_curves(self) if curve is not None)])
 
     def cut_back(self, planes: Mapping[str, CutPlane], depth: float) -> PanelShape:
         """See `Panel.cut_back`; the side of a round patch keeps behind its plane, and square to the sheet."""
         return cut_chain(self, planes, depth)
 
     def squared(self, depth: float) -> PanelShape:
-        """See `Panel.squared`; an end stays in a plane, as far back as its walls lean in where they do most."""
+        """See `Panel.squared`; an end, or a side in a plane, stays in one, back by what its walls lean in at most."""
         return square_chain(self, depth)
 
     def area(self) -> float:

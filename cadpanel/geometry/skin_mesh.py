@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.cone_sections import axis_frame
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_section import plane_section
+from cadpanel.geometry.plane_sides import side_curves
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.vectors import cross, side_of, unit
@@ -51,9 +53,7 @@ def skin_mesh(shape: Panel) -> SkinMesh:
 
 def _grid_mesh(shape: Panel) -> SkinMesh:
     """Of patches between two ends: rows from end to end, columns across."""
-    ends, owners = _end_points(shape)
-    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
-    grid = (1.0 - share) * ends[0] + share * ends[1]
+    grid, owners = _grid(shape)
     rows, columns = grid.shape[:2]
     across, along = arc_length(grid[rows // 2]), arc_length(np.swapaxes(grid, 0, 1)[columns // 2])
     chart = np.stack(np.meshgrid(across, along), axis=-1)
@@ -71,29 +71,40 @@ def _grid_mesh(shape: Panel) -> SkinMesh:
     )
 
 
-def _end_points(shape: Panel) -> tuple[Array, IntArray]:
-    """(2, c, 3) points along both ends, that of a generatrix or straight line over the skin at the same place.
-
-    And (c - 1,) the patches between two of them.
-    """
+def _grid(shape: Panel) -> tuple[Array, IntArray]:
+    """(ALONG + 1, c, 3) points of the skin in rows from end 0 to end 1; (c - 1,) the patches between two of a row."""
     corners = shape.corners()
     points, directions, normals = shape.rulings()
-    cuts = tuple(zip(*shape.cuts(), strict=True))
+    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
     parts: list[Array] = []
     for index, patch in enumerate(shape.patches):
         if not isinstance(patch, ConePatch):
-            share = np.linspace(0.0, 1.0, ACROSS + 1)[:, None]
-            part = (1.0 - share) * corners[:, None, index] + share * corners[:, None, index + 1]
+            across = np.linspace(0.0, 1.0, ACROSS + 1)[:, None]
+            ends = (1.0 - across) * corners[:, None, index] + across * corners[:, None, index + 1]
+            part = (1.0 - share) * ends[0] + share * ends[1]
         else:
-            frame = axis_frame(points[index], directions[index], normals[index], patch)
-            steps = min(_MOST_TURNS, max(ACROSS, math.ceil(abs(patch.sweep) / _TURN)))
-            radials = frame.radials(np.linspace(0.0, patch.sweep, steps + 1))
-            at = frame.center + frame.level_radius * radials
-            way = math.cos(frame.half_angle) * frame.axis + math.sin(frame.half_angle) * radials
-            part = np.stack([at + ((q - at) @ m / (way @ m))[:, None] * way for q, m in cuts])
+            part = _round_grid(shape, index, axis_frame(points[index], directions[index], normals[index], patch))
         parts.append(part if not parts else part[:, 1:])
     steps_of = [part.shape[1] - (place == 0) for place, part in enumerate(parts)]
     return np.concatenate(parts, axis=1), np.repeat(np.arange(len(parts)), steps_of)
+
+
+def _round_grid(shape: Panel, index: int, frame: AxisFrame) -> Array:
+    """(ALONG + 1, c, 3) points of a round patch: between sides in planes the columns turn with these."""
+    share = np.linspace(0.0, 1.0, ALONG + 1)[:, None]
+    across = np.linspace(0.0, 1.0, min(_MOST_TURNS, max(ACROSS, math.ceil(abs(frame.sweep) / _TURN))) + 1)
+    borders = [np.zeros_like(share), np.full_like(share, frame.sweep)]
+    for side, curve in enumerate(side_curves(shape)):
+        if curve is not None and index == side * (len(shape.patches) - 1):
+            heights = (1.0 - share) * curve.heights[0] + share * curve.heights[1]
+            borders[side] = curve.angles(heights[:, 0])[:, None]
+    angles = (1.0 - across) * borders[0] + across * borders[1]
+    low, high = (
+        plane_section(frame, point, normal).heights(angles[[row]])[0]
+        for row, (point, normal) in zip((0, -1), zip(*shape.cuts(), strict=True), strict=True)
+    )
+    heights = (1.0 - share) * low + share * high
+    return frame.points(angles.ravel(), heights.ravel()).reshape(*angles.shape, 3)
 
 
 def _polygon_mesh(shape: Panel) -> SkinMesh:

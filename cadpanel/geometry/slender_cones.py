@@ -44,7 +44,7 @@ def _straighten_patch(shape: StraightChain, index: int) -> StraightChain:
     patch = shape.patches[index]
     assert isinstance(patch, ConePatch)
     direction, normal = shape.directions[index], shape.normals[index]
-    middle = shape.corners()[:, index].mean(axis=0)
+    middle = shape.pierced()[:, index].mean(axis=0)
     widened = float((middle - shape.points[index]) @ direction) * math.tan(patch.half_angle)
     cylinder = replace(patch, radius=patch.radius + widened, half_angle=0.0, kind="cylinder")
     before = _turn_about_axis(middle, direction, normal, replace(patch, radius=cylinder.radius))

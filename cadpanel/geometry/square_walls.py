@@ -14,20 +14,29 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
+from cadpanel.geometry.chain_cutting import side_in_plane
 from cadpanel.geometry.end_leans import leans
 from cadpanel.geometry.leaning_sides import parallel_walk
 from cadpanel.geometry.limits import SMALLEST_LENGTH
-from cadpanel.geometry.panel import Chain, Outlined
+from cadpanel.geometry.panel import Chain, CutPlane, Outlined
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import end_spans, side_curve
 from cadpanel.geometry.vectors import cross, dot, unit
 
 SomeChain = TypeVar("SomeChain", bound=Chain)
+_ROUNDS = 8
 NEARLY_STRAIGHT = 0.05
 """Radians by which an outline must turn at a corner for its two walls to meet in a line of their own."""
 
 
 def square_chain(shape: SomeChain, depth: float) -> SomeChain:
-    """A chain whose ends and sides stand square to the sheet, whose other face is at `depth`."""
+    """A chain whose ends and sides stand square to the sheet, whose other face is at `depth`.
+
+    Along a side in a plane the lean changes, too: its edge keeps to a parallel plane, as those of ends do.
+    """
+    for side, plane in enumerate(shape.side_planes):
+        if plane is not None:
+            shape = side_in_plane(shape, side, _set_back(shape, side, plane, depth), 0.0)
     cut_points = shape.cut_points.copy()
     shorter = np.where(np.array([-1.0, 1.0]) * depth * shape.side_leans < 0.0, shape.side_leans, 0.0)
     far = parallel_walk((shape.points, shape.normals, shape.binormals()), shape.patches, shorter, depth)
@@ -37,11 +46,25 @@ def square_chain(shape: SomeChain, depth: float) -> SomeChain:
     )
     moved = shape.rewalked(far.points - depth * far.normals, shape.directions, far.normals, patches)
     rulings = moved.points, moved.directions, moved.normals
+    spans = end_spans(moved)
     for end, outward in ((0, -1.0), (1, 1.0)):
         way_out = outward * shape.cut_normals[end]
-        back = max(0.0, *(depth * lean for lean in leans(rulings, patches, way_out)))
+        back = max(0.0, *(depth * lean for lean in leans(rulings, patches, way_out, spans[end])))
         cut_points[end] -= back * way_out
     return moved.trimmed(cut_points, shape.cut_normals, np.zeros(2)).made_square()
+
+
+def _set_back(shape: Chain, side: int, plane: CutPlane, depth: float) -> CutPlane:
+    """The plane that a side's edge keeps to, so that the other face, along the normals, ends behind the given one.
+
+    Farther back the normals lean a little otherwise; each round is nearer to that by a part of `depth` by the radius.
+    """
+    back = 0.0
+    for _ in range(_ROUNDS):
+        curve = side_curve(shape.walled(side, plane.moved(-back)), side)
+        assert curve is not None
+        back = max(0.0, *(depth * (curve.frame.normals(curve.corners) @ plane.normal)).tolist())
+    return plane.moved(-back)
 
 
 def square_polygon(shape: Outlined, posts: Array | None, depth: float) -> Array:

@@ -66,10 +66,15 @@ class FlatPattern:
     bends: tuple[FlatBend, ...] = ()
 
     def rulings(self, bend: FlatBend, shares: Array) -> Array:
-        """(q, 2, 2) rulings of a bend, from end 0 to end 1, at shares (q,) of its sweep."""
+        """(q, 2, 2) rulings of a bend, from end 0 to end 1, at shares (q,) of the sweep that it has at both."""
         pieces = self.curves.take(np.array(bend.at_ends))
-        u = np.where(pieces.backward[:, None], 1.0 - shares, shares)
-        return np.swapaxes(pieces.points(u), 0, 1)
+        u = np.broadcast_to(shares, (2, len(shares)))
+        if pieces.curved.all():
+            way = np.sign(pieces.sweep[0])
+            begin = way * np.max(way * pieces.first)
+            whole = way * np.min(way * (pieces.first + pieces.sweep)) - begin
+            u = (begin + shares * whole - pieces.first[:, None]) / pieces.sweep[:, None]
+        return np.swapaxes(pieces.points(np.where(pieces.backward[:, None], 1.0 - u, u)), 0, 1)
 
 
 def neutral_offset(shape: Panel, thickness: float, skin_side: SkinSide = "outer", k_factor: float = 0.5) -> float:
@@ -154,19 +159,22 @@ def unroll_polygons(shapes: Sequence[PolygonShape]) -> list[FlatPattern]:
 
 
 def unroll_chains(shapes: Sequence[PanelShape]) -> list[FlatPattern]:
-    """Chains of as many patches each, the corner of side 0 and end 0 in the origin and side 0 along y."""
-    corners, ends = unroll_chain_arrays(shapes)
+    """Chains of as many patches each, their first ruling along y, with its place at end 0 in the origin."""
+    flat = unroll_chain_arrays(shapes)
     return [
-        _pattern(shape, corners[i], [end.take(slice(i, None, len(shapes))) for end in ends])
+        _pattern(
+            shape,
+            flat.corners[i],
+            [end.take(slice(i, None, len(shapes))) for end in flat.ends],
+            [side.take(slice(i, i + 1)) for side in flat.sides],
+        )
         for i, shape in enumerate(shapes)
     ]
 
 
-def _pattern(shape: PanelShape, corners: Array, ends: Sequence[FlatCurves]) -> FlatPattern:
-    """From corners (2, k + 1, 2) and the pieces along end 0 and, backwards, along end 1 to a pattern."""
+def _pattern(shape: PanelShape, corners: Array, ends: Sequence[FlatCurves], sides: Sequence[FlatCurves]) -> FlatPattern:
+    """From corners (2, k + 1, 2) and the pieces along ends and sides to a pattern."""
     count = len(shape.patches)
-    side_1 = segments(corners[:1, -1], corners[1:, -1])
-    side_0 = segments(corners[1:, 0], corners[:1, 0])
     bends = tuple(
         FlatBend(patch=index, at_ends=(index, 2 * count - index), sweep=abs(patch.sweep) * float(np.sign(patch.radius)))
         for index, patch in enumerate(shape.patches)
@@ -175,7 +183,7 @@ def _pattern(shape: PanelShape, corners: Array, ends: Sequence[FlatCurves]) -> F
     return FlatPattern(
         name=shape.name,
         feature=shape.feature,
-        curves=joined([ends[0], side_1, ends[1], side_0]),
+        curves=joined([ends[0], sides[1], ends[1], sides[0]]),
         edges=(*count * ("end 0",), "side 1", *count * ("end 1",), "side 0"),
         owners=(*range(count), count - 1, *reversed(range(count)), 0),
         tangents=np.swapaxes(corners[:, 1:-1], 0, 1),

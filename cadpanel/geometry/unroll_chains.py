@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.geometry.flat_curves import FlatCurves
+from cadpanel.geometry.flat_curves import FlatCurves, joined, segments
 from cadpanel.geometry.panel import Chain
 from cadpanel.geometry.patches import ConePatch
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curves
 from cadpanel.geometry.vectors import cross, dot, unit
 
 
@@ -22,6 +24,8 @@ class ChainArrays(NamedTuple):
         radius, half_angle, sweep: (m, k) of the patches; 0 for a plane.
         cut_points, cut_normals: (m, 2, 3).
         lift: (m,) of the skins that these cut.
+        spans: (m, 2, k, 2) angles between which the ends run over the patches.
+        sides: (m, 2) the curves of sides that stand in planes, None of others.
     """
 
     p: Array
@@ -34,6 +38,8 @@ class ChainArrays(NamedTuple):
     cut_points: Array
     cut_normals: Array
     lift: Array
+    spans: Array
+    sides: list[tuple[SideCurve | None, SideCurve | None]]
 
 
 def chain_arrays(shapes: Sequence[Chain]) -> ChainArrays:
@@ -59,14 +65,28 @@ def chain_arrays(shapes: Sequence[Chain]) -> ChainArrays:
         cut_points=np.array([shape.cut_points for shape in shapes]),
         cut_normals=np.array([shape.cut_normals for shape in shapes]),
         lift=np.array([shape.lift for shape in shapes]),
+        spans=np.array([end_spans(shape) for shape in shapes]),
+        sides=[side_curves(shape) for shape in shapes],
     )
 
 
-def unroll_chain_arrays(shapes: Sequence[Chain]) -> tuple[Array, tuple[FlatCurves, FlatCurves]]:
-    """Corners (m, 2, k + 1, 2) in the plane, and the m k pieces along end 0 and along end 1.
+class FlatChains(NamedTuple):
+    """m chains in the plane.
 
-    Those along end 1 run backwards, from the last patch to the first. Piece i of chain j stands in row i * m + j.
+    Attributes:
+        corners: (m, 2, k + 1, 2).
+        ends: the m k pieces along end 0 and along end 1; these run backwards, from the last patch to the first. Piece i
+            of chain j stands in row i * m + j.
+        sides: the m pieces along side 0, which run backwards, and along side 1.
     """
+
+    corners: Array
+    ends: tuple[FlatCurves, FlatCurves]
+    sides: tuple[FlatCurves, FlatCurves]
+
+
+def unroll_chain_arrays(shapes: Sequence[Chain]) -> FlatChains:
+    """Chains of as many patches each, rolled out."""
     of = chain_arrays(shapes)
     origin, along = _flat_rulings(of)
     cut = of.p + of.lift[:, None, None] * of.n
@@ -74,8 +94,39 @@ def unroll_chain_arrays(shapes: Sequence[Chain]) -> tuple[Array, tuple[FlatCurve
     heights = heights / dot(of.t[:, None], of.cut_normals[:, :, None])
     origin -= (origin[:, 0] + heights[:, 0, 0, None] * along[:, 0])[:, None]
     corners = origin[:, None] + heights[..., None] * along[:, None]
+    sides = _side_pieces(of, origin, along, corners, 0), _side_pieces(of, origin, along, corners, 1)
     ends = _end_pieces(of, origin, along, corners, 0), _end_pieces(of, origin, along, corners, 1)
-    return corners, ends
+    return FlatChains(corners, ends, sides)
+
+
+def _side_pieces(of: ChainArrays, origin: Array, along: Array, corners: Array, side: int) -> FlatCurves:
+    """The pieces along a side; of those that stand in planes the corners are moved to where their planes are."""
+    straight = segments(corners[:, 0, -side], corners[:, 1, -side])
+    patch = 0 if side == 0 else of.radius.shape[1] - 1
+    found = []
+    for row, sides in enumerate(of.sides):
+        curve, one = sides[side], straight.take(slice(row, row + 1))
+        if curve is not None:
+            level, sine = of.radius[row, patch] * np.cos(of.half_angle[row, patch]), np.sin(of.half_angle[row, patch])
+            one = replace(
+                one,
+                origin=origin[row : row + 1, patch],
+                along=along[row : row + 1, patch],
+                level_radius=np.array([level]),
+                sine=np.array([sine]),
+                first=curve.heights[:1],
+                sweep=np.diff(curve.heights),
+                reach=curve.section.reach,
+                rate=curve.section.rate,
+                way_out=np.array([curve.way_out]),
+            )
+            corners[row, :, -side] = one.points(np.array([[0.0, 1.0]]))[0]
+        found.append(one)
+    pieces = joined(found)
+    start, stop = corners[:, 0, -side], corners[:, 1, -side]
+    if side == 0:
+        return replace(pieces, start=stop, stop=start, backward=np.ones(len(pieces), dtype=bool))
+    return replace(pieces, start=start, stop=stop)
 
 
 def _flat_rulings(of: ChainArrays) -> tuple[Array, Array]:
@@ -150,8 +201,10 @@ def _end_pieces(of: ChainArrays, origin: Array, along: Array, corners: Array, en
         along=rows(along[:, :-1]),
         level_radius=rows(level),
         sine=rows(k),
-        sweep=rows(of.sweep),
+        first=rows(of.spans[:, end, :, 0]),
+        sweep=rows(of.spans[:, end, :, 1] - of.spans[:, end, :, 0]),
         reach=rows(reach),
         rate=rows(rate),
         backward=np.full(of.sweep.size, end == 1),
+        way_out=np.zeros(of.sweep.size),
     )

@@ -102,8 +102,10 @@ def _relief(middle: Array, start: Array, stop: Array, opening: float) -> FlatCur
         along=((start - middle) / radius)[None],
         level_radius=np.zeros(1),
         sine=np.ones(1),
+        first=np.zeros(1),
         sweep=np.array([opening]),
         reach=np.array([[radius, 0.0, 0.0]]),
         rate=np.array([[1.0, 0.0, 0.0]]),
         backward=np.zeros(1, dtype=bool),
+        way_out=np.zeros(1),
     )

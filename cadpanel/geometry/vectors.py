@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from cadpanel.arrays import Array
@@ -18,12 +20,24 @@ def cross(first: Array, second: Array) -> Array:
     if first.ndim == second.ndim == 1:  # plain numbers are ten times as fast for a single pair
         (a, b, c), (d, e, f) = first.tolist(), second.tolist()
         return np.array([b * f - c * e, c * d - a * f, a * e - b * d])
-    product = np.empty(np.broadcast_shapes(first.shape, second.shape))
-    (ax, ay, az), (bx, by, bz) = ((vectors[..., 0], vectors[..., 1], vectors[..., 2]) for vectors in (first, second))
-    product[..., 0] = ay * bz - az * by
+    ax, ay, az = first[..., 0], first[..., 1], first[..., 2]
+    bx, by, bz = second[..., 0], second[..., 1], second[..., 2]
+    x = ay * bz - az * by
+    product = np.empty((*x.shape, 3))
+    product[..., 0] = x
     product[..., 1] = az * bx - ax * bz
     product[..., 2] = ax * by - ay * bx
     return product
+
+
+def beside(parts: Sequence[Array]) -> Array:
+    """Return arrays (n, ...) that are alike as one (n, parts, ...); several times faster than numpy.stack of few."""
+    if len(parts) == 1:
+        return parts[0][:, None]
+    together = np.empty((len(parts[0]), len(parts), *parts[0].shape[1:]))
+    for place, part in enumerate(parts):
+        together[:, place] = part
+    return together
 
 
 def dot(first: Array, second: Array) -> Array:

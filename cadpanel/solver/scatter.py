@@ -25,6 +25,10 @@ class Scatter:
         return bool(np.all(self._index[1:] > self._index[:-1]))
 
     @cached_property
+    def _to_all(self) -> bool:
+        return self._once and len(self._index) == self._count
+
+    @cached_property
     def _gather(self) -> csr_array:
         # Here, not above: terms use this, settings ask limits for their ranges, and neither help nor a refusal should
         # wait for SciPy.
@@ -35,6 +39,9 @@ class Scatter:
 
     def add(self, target: Array, values: Array) -> None:
         """target[index] += values (groups, ...), adding up where an index repeats."""
+        if self._to_all:
+            target += values
+            return
         if self._once:
             target[self._index] += values
             return

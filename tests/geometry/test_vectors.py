@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.vectors import cross, dot, norm, side_of, unit
+from cadpanel.geometry.vectors import beside, cross, dot, norm, side_of, unit
 
 seeds = st.integers(0, 2**32 - 1)
 shapes = st.sampled_from([(), (1,), (5,), (2, 3)])
@@ -21,6 +21,13 @@ def test_products_and_lengths_are_those_of_the_library_for_one_pair_and_for_many
     assert cross(first, second) == pytest.approx(np.cross(first, second), abs=1e-12)
     assert dot(first, second) == pytest.approx(np.sum(first * second, axis=-1), abs=1e-12)
     assert norm(first) == pytest.approx(np.linalg.norm(first, axis=-1), rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", [(2,), (2, 3), (2, 6, 4)])
+@pytest.mark.parametrize("count", [1, 3])
+def test_arrays_beside_each_other_are_those_of_the_library(shape, count):
+    parts = list(np.random.default_rng(7).normal(size=(count, *shape)))
+    assert np.array_equal(beside(parts), np.stack(parts, axis=1))
 
 
 @given(seeds)

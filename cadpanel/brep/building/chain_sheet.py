@@ -1,4 +1,4 @@
-"""The sheet of a chain: two parallel skins, end walls in the cut planes or square to the sheet, planar side walls."""
+"""The sheet of a chain: two parallel skins, and walls that are planes, or square to the sheet."""
 
 from __future__ import annotations
 
@@ -61,12 +61,22 @@ def _side_wall(
     bottom: SkinTopology,
     posts: tuple[TopoDS_Edge, TopoDS_Edge],
 ) -> TopoDS_Face:
-    """The wall through a free ruling, as it leans; `outward` is +1 where it faces along b."""
+    """The wall through a free ruling, as it leans, or in its plane; `outward` is +1 where it faces along b."""
     loop = [bottom.rulings[ruling].Reversed(), posts[0], top.rulings[ruling], posts[1].Reversed()]
     # t then n turns about t x n = b, so up the far post and back along the top is the loop about b, and this is -b's.
     if outward > 0:
         loop = [edge.Reversed() for edge in reversed(loop)]
-    way_up = shape.normals[ruling] + shape.side_leans[0 if ruling == 0 else 1] * shape.binormals()[ruling]
+    side = 0 if ruling == 0 else 1
+    plane = shape.side_planes[side]
+    if plane is not None and shape.square:
+        far = top if top.side_strips else bottom
+        near = bottom if far is top else top
+        along = near.rulings[ruling], far.rulings[ruling]
+        return strip_wall(far.side_strips[ruling], loop, along, posts, plane.normal)
+    if plane is not None:
+        wall = surfaces.plane_surface(plane.point, plane.normal, cross(plane.normal, shape.normals[ruling]))
+        return edges.face_on(wall.surface, wall.agrees, loop)
+    way_up = shape.normals[ruling] + shape.side_leans[side] * shape.binormals()[ruling]
     normal = outward * cross(shape.directions[ruling], way_up)
     wall = surfaces.plane_surface(bottom.corners[0, ruling], normal, shape.directions[ruling])
     return edges.face_on(wall.surface, wall.agrees, loop)

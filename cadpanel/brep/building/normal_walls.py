@@ -18,7 +18,8 @@ from cadpanel.brep.building import edges
 from cadpanel.brep.building.interpolation import DEGREE, Interpolant, interpolate
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.brep.kernel.splines import integer_array, pole_grid, real_array
-from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
+from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection, lifted
+from cadpanel.geometry.plane_sides import SideCurve
 from cadpanel.geometry.vectors import cross
 
 _EVERY = np.ones(6)
@@ -75,6 +76,21 @@ def strip_along_arc(frame: AxisFrame, section: EllipticSection, depth: float) ->
         return section.points(parameters), frame.normals(section.sweep_angles(parameters))
 
     return normal_strip(at, section.start, section.stop, depth, abs(frame.level_radius))
+
+
+def strip_along_side(curve: SideCurve, lift: float) -> NormalStrip:
+    """The strip along a side that stands in a plane, of which `curve` is on the other face, from the skin at `lift`.
+
+    Its parameter is the height.
+    """
+    skin = lifted(curve.frame, lift)
+
+    def at(heights: Array) -> tuple[Array, Array]:
+        angles = curve.angles(heights)
+        return skin.points(angles, heights), skin.normals(angles)
+
+    low, high = curve.heights.tolist()
+    return normal_strip(at, low, high, -lift, abs(skin.level_radius))
 
 
 def strip_wall(

@@ -14,6 +14,7 @@ from cadpanel.brep.building.interpolation import DEGREE, Interpolant, interpolat
 from cadpanel.brep.kernel import points as kernel
 from cadpanel.brep.kernel.splines import pole_array_2d
 from cadpanel.geometry.cone_sections import AxisFrame, EllipticSection
+from cadpanel.geometry.plane_sides import SideCurve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,6 +96,17 @@ def arc_on_round(surface: RoundSurface, section: EllipticSection) -> Geom2d_Curv
 
     weights = np.array([surface.radius, 1.0])
     return plane_spline(interpolate(wanted, section.start, section.stop, weights, surface.radius))
+
+
+def side_on_round(surface: RoundSurface, curve: SideCurve) -> Geom2d_Curve:
+    """The side that stands in a plane, in the parameter plane of the cone, its parameter the height: a spline."""
+
+    def wanted(heights: Array) -> Array:
+        return surface.parameters(curve.angles(heights), heights)
+
+    weights = np.array([surface.radius, 1.0])
+    low, high = curve.heights.tolist()
+    return plane_spline(interpolate(wanted, low, high, weights, surface.radius))
 
 
 def plane_spline(curve: Interpolant) -> Geom2d_Curve:

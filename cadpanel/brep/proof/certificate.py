@@ -143,7 +143,7 @@ def certify(
     flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)
     clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)
-    overlap = None if joint is None else _overlap(panels_step, solids, failures)
+    overlap = None if joint is None else _overlap(panels_step, solids, seams, failures)
     kinds = Counter[str]()
     for facts in solids:
         kinds.update(facts.face_kinds)
@@ -169,9 +169,18 @@ def certify(
     )
 
 
-def _overlap(panels_step: str | os.PathLike[str], solids: Sequence[ShapeFacts], failures: list[str]) -> float:
+def _overlap(
+    panels_step: str | os.PathLike[str],
+    solids: Sequence[ShapeFacts],
+    seams: Sequence[ExpectedSeam],
+    failures: list[str],
+) -> float:
     """The largest volume that two solids share, mm3, of those that no plane parts."""
-    pairs = unparted(solids)
+    across: dict[str, list[Array]] = {}
+    for seam in seams:
+        for name in seam.panels if seam.across is not None else ():
+            across.setdefault(name, []).append(np.asarray(seam.across))
+    pairs = unparted(solids, across)
     shared = common_volumes(panels_step, pairs) if pairs else []
     for (first, second), volume in zip(pairs, shared, strict=True):
         if not volume <= OVERLAP_LIMIT:
@@ -255,7 +264,9 @@ def _check_skin(panel: ExpectedPanel, facts: ShapeFacts, failures: list[str]) ->
         f"has the faces {_described(found)}, expected {_described(wanted)}": wanted != +found,
         f"has {shared} straight shared edges, expected {len(panel.kinds) - 1}": shared != len(panel.kinds) - 1,
         f"has a corner {error:.3g} mm away from where it is expected": not error <= POSITION_LIMIT,
-        "has boundary edges that are neither lines nor ellipses": facts.other_borders > 0,
+        f"has {facts.other_borders} boundary edges that are neither lines nor ellipses, expected {panel.bent_sides}": (
+            facts.other_borders != panel.bent_sides
+        ),
     }
     failures += [f"Panel '{panel.name}': its skin {problem}." for problem, present in problems.items() if present]
     return error

@@ -2,10 +2,11 @@
 
 Both walls at a seam are planes. The clear width is measured square to either wall, from every point of the other one's
 outline: along both faces of the sheet, and up and down its corners. It is linear on a wall, so it is least and largest
-on the outline, and an arc of ellipse is extreme where a formula says. Where two walls are not parallel, as at the sides
-of cones, a corner of one may lie where the other has ended: the joint is at least as wide as the space between two
-parallel planes that part the walls. Square ends that bend have no one plane: there the width is measured along the way
-across the joint, at least and at most between any place of the one wall and any of the other.
+on the outline, and an arc of ellipse is extreme where a formula says; other edges are followed point by point. Where
+two walls are not parallel, as where the sides of cones run along rulings, a corner of one may lie where the other has
+ended: the joint is at least as wide as the space between two parallel planes that part the walls. Square ends that bend
+have no one plane: there the width is measured along the way across the joint, at least and at most between any place of
+the one wall and any of the other.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.geometry.curve_pieces import CurvePieces
 from cadpanel.geometry.sampled_curves import POINTS, reach
+from cadpanel.geometry.shape import edge_corners
 from cadpanel.geometry.vectors import unit
 
 CLEAR_LIMIT = 1e-6
@@ -108,6 +110,8 @@ def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
     if standing is not None:
         return _wall_in(solid, *standing)
     corners = panel.corners
+    if panel.side_plane(edge) is not None:
+        return _wall_at_side(solid, edge_corners(corners, edge))
     chosen = edge_pieces(solid, corners, edge)
     if chosen is None:
         return None
@@ -125,9 +129,15 @@ def _wall(solid: ShapeFacts, panel: ExpectedPanel, edge: str) -> _Wall | None:
 
 
 def _standing(panel: ExpectedPanel, edge: str) -> tuple[Array, Array] | None:
-    """A point on and the normal of the plane in which the outer face of a return stands; None where there is none."""
+    """A point on and the normal of the plane in which a wall stands by the panel's numbers; None where none does.
+
+    That is the outer face of a return, or the wall at a side that follows no ruling.
+    """
     if panel.tray is not None:
         return panel.tray.wall(edge)
+    plane = panel.side_plane(edge)
+    if plane is not None and not panel.square:
+        return plane.point, plane.normal
     if panel.sheet is None or not edge.startswith("side") or not panel.folded[int(edge[-1])]:
         return None
     outer = panel.sheet.shape.offset(0.0 if panel.sheet.skin_side == "outer" else panel.sheet.thickness)
@@ -143,7 +153,20 @@ def _wall_in(solid: ShapeFacts, point: Array, normal: Array) -> _Wall | None:
     there = flat[(off <= CLEAR_LIMIT) & (np.linalg.norm(normals - normal, axis=-1) <= CLEAR_LIMIT)]
     if not len(there):
         return None
-    return _Wall(solid.pieces.take(np.any([solid.bounds(face) for face in there], axis=0)), point, normal)
+    own = np.any([solid.bounds(face) for face in there], axis=0)
+    others = solid.other_points[np.isin(solid.other_edges, there).any(axis=1)]
+    return _Wall(solid.pieces.take(own), point, normal, others)
+
+
+def _wall_at_side(solid: ShapeFacts, corners: Array) -> _Wall | None:
+    """The wall of normals at a side that is neither a line nor an arc, from corner (2, 3) to corner."""
+    ends = solid.other_points[:, [0, -1]]
+    off = np.minimum(*(np.abs(ends - row).max(axis=(1, 2), initial=0.0) for row in (corners, corners[::-1])))
+    if not len(off) or off.min() > CLEAR_LIMIT:
+        return None
+    walls = [face for face in solid.other_edges[int(off.argmin())].tolist() if np.isnan(solid.surfaces[face, 6])]
+    own = np.asarray(np.isin(solid.piece_faces, walls).any(axis=1))
+    return _Wall(solid.pieces.take(own), others=solid.other_points[np.isin(solid.other_edges, walls).any(axis=1)])
 
 
 def _walls_of_pieces(solid: ShapeFacts, corners: Array, chosen: IntArray) -> _Wall:
@@ -170,7 +193,7 @@ def _between(one: _Wall, other: _Wall, across: Array | None) -> Clear | None:
         way = unit(across)[None]
         ahead, behind = other.reach(way), one.reach(way)
         return _told(float(ahead[0][0] - behind[1][0]), float(ahead[1][0] - behind[0][0]))
-    widths = [_beyond(one, other.outline), _beyond(other, one.outline)]
+    widths = [_beyond(one, other), _beyond(other, one)]
     halfway = unit(one.normal - other.normal)
     ways = np.stack([halfway, halfway if across is None else unit(across)])
     between = other.reach(ways)[0] - one.reach(ways)[1]
@@ -183,10 +206,10 @@ def _told(least: float, largest: float) -> Clear:
     return Clear(round(least, DIGITS) + 0.0, round(largest, DIGITS) + 0.0)
 
 
-def _beyond(wall: _Wall, outline: CurvePieces) -> tuple[float, float]:
-    """How far an outline lies beyond a wall's plane, at least and at most."""
+def _beyond(wall: _Wall, other: _Wall) -> tuple[float, float]:
+    """How far the outline of another wall lies beyond a wall's plane, at least and at most."""
     assert wall.normal is not None
     assert wall.point is not None
-    least, greatest = outline.reach(wall.normal[None])
+    least, greatest = other.reach(wall.normal[None])
     level = float(wall.normal @ wall.point)
-    return float(least.min()) - level, float(greatest.max()) - level
+    return float(least[0]) - level, float(greatest[0]) - level

@@ -12,7 +12,8 @@ from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.step.properties import PartData
 from cadpanel.geometry.fixings import Hole
-from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.panel import CutPlane, Panel
+from cadpanel.geometry.plane_sides import planes_of
 from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.trays import TrayShape
 
@@ -99,6 +100,17 @@ class ExpectedPanel:
         own = 2 * len(self.kinds) - 2 if self.tray is None else self.tray.plan.seams
         return own + (0 if self.holes is None else self.holes.smooth_edges)
 
+    def side_plane(self, edge: str) -> CutPlane | None:
+        """The plane in which a side stands that follows no ruling; None of all other edges."""
+        if self.sheet is None or not edge.startswith("side"):
+            return None
+        return planes_of(self.sheet.shape)[int(edge[-1])]
+
+    @property
+    def bent_sides(self) -> int:
+        """How many of its sides are neither lines nor arcs of ellipses."""
+        return sum(self.side_plane(side) is not None for side in ("side 0", "side 1"))
+
     @property
     def _outer_walls(self) -> tuple[str, ...]:
         if self.tray is not None:
@@ -108,7 +120,8 @@ class ExpectedPanel:
         if not self.square:
             return 4 * ("plane",)
         ends = tuple("plane" if kind == "plane" else "other" for kind in self.kinds)
-        return (*ends, *ends, "plane", "plane")
+        bent = self.bent_sides
+        return (*ends, *ends, *(2 - bent) * ("plane",), *bent * ("other",))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,7 @@
 """Do any two sheets in a file share volume? Millimetres.
 
-Two sheets share none where a plane parts them: a wall of either, or any other of their flat faces. What a plane of
+Two sheets share none where a plane parts them: a wall of either, any other of their flat faces, or one square to a way
+across a joint of either, as square walls at ends and sides that bend are no planes. What a plane of
 planes, cones and cylinders bounds is farthest out, in any direction, on an edge: where a developable face touches a
 plane, it does so along a whole ruling, which ends on edges. So does a wall of normals, which is ruled, too. So sheets
 are parted, or not, by their edges alone. The kernel is asked only for what is left.
@@ -8,7 +9,7 @@ are parted, or not, by their edges alone. The kernel is asked only for what is l
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,14 +21,23 @@ TOUCH = 1e-7
 """How far one sheet may reach through the plane that parts it from another, mm: the kernel's own tolerance."""
 
 
-def unparted(solids: Sequence[ShapeFacts]) -> list[tuple[int, int]]:
-    """Pairs of sheets, by their places, whose boxes meet and which none of their flat faces parts."""
+def unparted(
+    solids: Sequence[ShapeFacts], across: Mapping[str, Sequence[Array]] | None = None
+) -> list[tuple[int, int]]:
+    """Pairs of sheets, by their places, whose boxes meet and which no plane parts that is known.
+
+    Args:
+        solids: the sheets.
+        across: ways (3,) across the joints of each, by its name, where they are known.
+    """
+    ways = {name: np.concatenate([own, np.negative(own)]) for name, own in (across or {}).items()}
+    normals = [np.concatenate([_flat_normals(facts), ways.get(facts.name, np.empty((0, 3)))]) for facts in solids]
     there = [place for place, facts in enumerate(solids) if facts.solids and len(facts.pieces)]
     boxes = np.array([_box(solids[place]) for place in there]).reshape(-1, 2, 3)
     return [
         (i, j)
         for i, j in sorted((there[one], there[other]) for one, other in meeting(boxes[:, 0], boxes[:, 1], TOUCH))
-        if not (_parts(solids[i], solids[j]) or _parts(solids[j], solids[i]))
+        if not (_parts(solids[i], solids[j], normals[i]) or _parts(solids[j], solids[i], normals[j]))
     ]
 
 
@@ -37,9 +47,13 @@ def _box(facts: ShapeFacts) -> tuple[Array, Array]:
     return least.min(axis=1), greatest.max(axis=1)
 
 
-def _parts(one: ShapeFacts, other: ShapeFacts) -> bool:
-    """Whether a flat face of the one parts it from the other: the one is behind it, the other beyond."""
-    planes = one.surfaces[one.surfaces[:, 6] == 0.0]
-    normals = planes[:, 8:] * planes[:, 3:6]
+def _flat_normals(facts: ShapeFacts) -> Array:
+    """(f, 3) of the flat faces of a sheet, out of it."""
+    planes = facts.surfaces[facts.surfaces[:, 6] == 0.0]
+    return np.asarray(planes[:, 8:] * planes[:, 3:6])
+
+
+def _parts(one: ShapeFacts, other: ShapeFacts, normals: Array) -> bool:
+    """Whether a plane square to one of (n, 3) normals parts the one from the other, which is beyond it."""
     ahead = other.reach(normals)[0].min(axis=1) - one.reach(normals)[1].max(axis=1)
     return bool(ahead.max(initial=-np.inf) >= -TOUCH)

@@ -62,6 +62,8 @@ def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePiec
     """The edge as the fit has it, on the faces in the file; None unless they go on to it."""
     if panel.fitted is not None and _is_folded(panel, edge):
         return _before_folding(skin, edge_corners(panel.fitted.corners, edge))
+    if panel.fitted is not None and panel.side_plane(edge) is not None:
+        return _before_cutting(skin, edge_corners(panel.corners, edge), edge_corners(panel.fitted.corners, edge))
     chosen = edge_pieces(skin, panel.corners, edge)
     if chosen is not None and edge.startswith("end"):
         chosen = chosen[panel.folded[0] : len(chosen) - panel.folded[1]]
@@ -80,6 +82,15 @@ def _fitted_edge(skin: ShapeFacts, panel: ExpectedPanel, edge: str) -> CurvePiec
     ]
     known = [piece for piece in pieces if piece is not None]
     return together(known) if len(known) == len(pieces) else None
+
+
+def _before_cutting(skin: ShapeFacts, built: Array, fitted: Array) -> CurvePieces | None:
+    """The ruling on the face that a plane cuts between two corners now, between those that the fit has; else None."""
+    ends, border = skin.other_points[:, [0, -1]], skin.other_edges[:, 1] < 0
+    off = np.minimum(*(np.abs(ends - row).max(axis=(1, 2), initial=0.0) for row in (built, built[::-1])))
+    for place in np.flatnonzero(border & (off <= ON_SURFACE)).tolist():
+        return _piece_on(skin.surfaces[skin.other_edges[place, 0]], fitted[0], fitted[1], None, bent=False)
+    return None
 
 
 def _is_folded(panel: ExpectedPanel, edge: str) -> bool:

@@ -22,7 +22,7 @@ _NAME, _LEAST, _MOST = 0.06, 2.0, 40.0
 _SMALL = 0.6
 # No text is wider than this part of what it stands in.
 _FILLED = 0.8
-# A straight edge with a smaller bevel, in degrees, is square to all digits that are told.
+# A smaller bevel, in degrees, is none to all digits that are told, and a smaller difference of two.
 _SQUARE = 0.05
 
 
@@ -68,7 +68,7 @@ def _sentences(part: FlatPart, record: PanelModel, sheet: SheetSettings, shop: S
     if part.fixings is not None:
         yield f"{len(part.fixings.found.holes)} holes of {part.fixings.rule.diameter:g} mm"
     for edge, (least, largest) in record.bevels.items():
-        if edge.startswith("end"):
+        if edge.startswith("end") or largest - least >= _SQUARE:
             yield f"{edge}: bevel {least:.1f} to {largest:.1f} deg"
         elif abs(least) >= _SQUARE:
             yield f"{edge}: bevel {least:.1f} deg"

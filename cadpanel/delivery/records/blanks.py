@@ -71,7 +71,7 @@ class FixingModel(Record):
 
 
 class CutModel(Record):
-    """A plane that cuts an end: its unit normal, and how far it lies from the origin along that, mm."""
+    """A plane that cuts an end or a side: its unit normal, and how far it lies from the origin along that, mm."""
 
     normal: Direction
     offset: float

@@ -20,6 +20,7 @@ from cadpanel.geometry.flat_curves import joined
 from cadpanel.geometry.flat_sizes import FlatSize, flat_sizes
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch, Patch
+from cadpanel.geometry.plane_sides import side_curves
 from cadpanel.geometry.sheet_checks import other_face
 from cadpanel.geometry.smallest_rectangle import Rectangle
 from cadpanel.geometry.trays import TrayShape
@@ -182,7 +183,11 @@ def _end_angles(shape: Panel) -> Array:
         return np.array([sweeps, sweeps])
     _, _, normals = shape.rulings()
     _, cut_normals = shape.cuts()
-    ways = unit(cross(normals[None], np.broadcast_to(cut_normals[:, None], (2, *normals.shape))))
+    ends = np.tile(normals, (2, 1, 1))
+    for side, curve in enumerate(side_curves(shape)):
+        if curve is not None:
+            ends[:, -side] = curve.frame.normals(curve.corners)
+    ways = unit(cross(ends, np.broadcast_to(cut_normals[:, None], ends.shape)))
     cosines = (ways[:, :-1] * ways[:, 1:]).sum(axis=-1)
     sines = (cross(ways[:, :-1], ways[:, 1:]) * cut_normals[:, None]).sum(axis=-1)
     return np.asarray(np.arctan2(sines, cosines))

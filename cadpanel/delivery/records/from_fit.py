@@ -9,7 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.delivery.records.flat_parts import FlatPart
-from cadpanel.delivery.records.from_shape import cut_model, cut_models, fitted_model, patch_models, rows, ruling_models
+from cadpanel.delivery.records.from_shape import (
+    cut_model,
+    cut_models,
+    fitted_model,
+    patch_models,
+    rows,
+    ruling_models,
+    side_cut_models,
+)
 from cadpanel.delivery.records.report import (
     BaselinesModel,
     OriginModel,
@@ -114,6 +122,7 @@ def with_flat_parts(
                 "bends": part.bends,
                 "other_face": rows(panel.other.corners()),
                 "cuts": cut_models(panel.shape),
+                "side_cuts": side_cut_models(panel.shape),
                 "bevels": part.bevels,
                 "fixings": part.holes,
                 "notes": (*record.notes, *_fixing_note(part)),

@@ -21,6 +21,7 @@ from cadpanel.delivery.records.report import FittedModel
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, cut_cone, lifted, radius_range
 from cadpanel.geometry.panel import Panel
 from cadpanel.geometry.patches import ConePatch, Patch
+from cadpanel.geometry.plane_sides import end_spans, planes_of
 from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.trays import TrayShape
 
@@ -73,7 +74,7 @@ def _of_round_patches(shape: PanelShape) -> tuple[Pair | None, ...]:
         else None
         for index, patch in enumerate(shape.patches)
     ]
-    return tuple(None if frame is None else _radii(shape, frame) for frame in frames)
+    return tuple(None if frame is None else _radii(shape, index, frame) for index, frame in enumerate(frames))
 
 
 @radius_ranges.register
@@ -120,6 +121,14 @@ def cut_models(shape: Panel) -> tuple[CutModel, ...]:
     return tuple(cut_model(point, normal) for point, normal in zip(*shape.cuts(), strict=True))
 
 
+def side_cut_models(shape: Panel) -> tuple[CutModel | None, ...]:
+    """The planes in which a panel's sides stand that follow no ruling; none where both do."""
+    planes = planes_of(shape)
+    if planes == (None, None):
+        return ()
+    return tuple(None if plane is None else cut_model(plane.point, plane.normal) for plane in planes)
+
+
 def cut_model(point: Array, normal: Array) -> CutModel:
     """The plane through a point (3,) with a unit normal (3,)."""
     return CutModel(normal=vector(normal), offset=float(point @ normal))
@@ -138,7 +147,7 @@ def vector(xyz: Array) -> Vector:
 
 def _round_model(shape: PanelShape, index: int, patch: ConePatch) -> ConePatchModel | CylinderPatchModel:
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
-    smallest, largest = _radii(shape, frame)
+    smallest, largest = _radii(shape, index, frame)
     if patch.half_angle == 0.0:
         return CylinderPatchModel(
             axis=vector(frame.axis),
@@ -160,13 +169,15 @@ def _round_model(shape: PanelShape, index: int, patch: ConePatch) -> ConePatchMo
     )
 
 
-def _radii(shape: PanelShape, frame: AxisFrame) -> tuple[float, float]:
+def _radii(shape: PanelShape, index: int, frame: AxisFrame) -> tuple[float, float]:
     """Smallest and largest distance of the trimmed patch from its axis; both lie on the sections at its ends."""
     cut = lifted(frame, shape.lift)
     found = np.array(
         [
-            radius_range(cut_cone(cut, point, normal), frame.sweep)
-            for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
+            radius_range(cut_cone(cut, point, normal), last, first)
+            for point, normal, (first, last) in zip(
+                shape.cut_points, shape.cut_normals, end_spans(shape)[:, index].tolist(), strict=True
+            )
         ]
     )
     radii = np.abs(found + (frame.level_radius - cut.level_radius))

@@ -169,6 +169,8 @@ class PanelModel(Record):
         other_face: corners of the sheet's other face, in the same rows as those of the skin: by them the walls at its
             sides, or of a polygon, may lean.
         cuts: the planes in which its ends lie; none of a polygon.
+        side_cuts: the planes in which side 0 and side 1 of a cone stand, half a joint back from their seams, their
+            normals out of the panel; None of one along its ruling. Empty where both are.
         bevels: of each edge the least and the largest angle between wall and sheet normal, square to the edge; positive
             where the outer face is the shorter one. Along straight edges both are one; 0 where the wall is square.
         fixings: its holes, in the order of the flat pattern's outline.
@@ -204,6 +206,7 @@ class PanelModel(Record):
     bends: tuple[BendModel, ...] = ()
     other_face: tuple[tuple[Vector, ...], ...] = ()
     cuts: tuple[CutModel, ...] = ()
+    side_cuts: tuple[CutModel | None, ...] = ()
     bevels: dict[Edge, Pair] = Field(default_factory=dict)
     fixings: tuple[FixingModel, ...] = ()
     returns: tuple[Edge, ...] = ()
@@ -220,6 +223,11 @@ class PanelModel(Record):
             raise ValueError("the other face has other corners than the skin")
         if self.rulings and (polygon or len(self.rulings) != rows[0]):
             raise ValueError(f"{len(self.rulings)} rulings do not fit corners in rows of {rows}")
+        if self.side_cuts and (polygon or len(self.side_cuts) != 2):
+            raise ValueError(f"{len(self.side_cuts)} planes of sides do not fit corners in rows of {rows}")
+        for side, cut in enumerate(self.side_cuts):
+            if cut is not None and self.patches[-side].kind == "plane":
+                raise ValueError(f"side {side} is flat, and needs no plane of its own")
         if self.fitted is not None:
             self.fitted.check_that_all_is_there(polygon=polygon)
         return self

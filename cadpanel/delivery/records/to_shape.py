@@ -13,6 +13,7 @@ from cadpanel.delivery.records.patches import PatchModel, RulingModel
 from cadpanel.delivery.records.report import PanelModel, ReportModel
 from cadpanel.errors import DeliveryError
 from cadpanel.geometry.leaning_sides import may_lean
+from cadpanel.geometry.panel import CutPlane
 from cadpanel.geometry.patches import ConePatch, Patch, PlanePatch
 from cadpanel.geometry.returns import PATCHES, SIDES, ReturnRule
 from cadpanel.geometry.shape import PanelShape, PolygonShape
@@ -52,9 +53,12 @@ def _before_folding(panel: PanelModel, depth: float, *, square: bool = False) ->
         posts = None if square else moves[0]
         return _polygon(panel, corners[0], posts, square=square)
     shape = _chain(panel, panel.rulings, panel.cuts)
-    if square:
-        return shape.made_square()
-    return shape.trimmed(*shape.cuts(), _side_leans(moves, shape.binormals(), shape.normals, shape.patches))
+    leans = _side_leans(moves, shape.binormals(), shape.normals, shape.patches)
+    for side, cut in enumerate(panel.side_cuts):
+        if cut is not None:
+            normal = np.array(cut.normal)
+            shape, leans[side] = shape.walled(side, CutPlane(point=cut.offset * normal, normal=normal)), 0.0
+    return shape.made_square() if square else shape.trimmed(*shape.cuts(), leans)
 
 
 def recorded_shapes(report: ReportModel) -> list[Built]:

@@ -43,16 +43,21 @@ class Trial(Method):
 
     Attributes:
         too_far: whether panels deviate by more than they may.
+        steps: so many at most, after those that gather corners; as many as it takes if not given.
+        goes_on: whether it begins where another trial of the same panels ended, not from local fits.
     """
 
     too_far: Callable[[Sequence[Panel]], bool]
+    steps: int | None = None
+    goes_on: bool = False
 
     def fit(
         self, problem: Problem, starts: Sequence[Array], settings: FitSettings, progress: Progress | None = None
     ) -> Fitted:
         """Fit all panels from their local fits; restarts are of no use here."""
         limits = problem.limits(settings, MARGIN)
-        gathered, iterations = gather(problem, settings, limits, starts[0], _FIRST)
+        gathered, iterations = (starts[0], 0) if self.goes_on else gather(problem, settings, limits, starts[0], _FIRST)
+        left = _STEPS * _TIGHTENINGS if self.steps is None else self.steps
         held: list[HeldTerm] = [*seams_held(problem, settings, gathered), *limits]
         model = HeldObjective(problem, [problem.deviation], held)
 
@@ -61,8 +66,8 @@ class Trial(Method):
 
         unknowns, stopped = model.starting_from(gathered), Stop.STALLED
         for _ in range(_TIGHTENINGS):
-            end = interior_point(model, unknowns, Limits(steps=_STEPS, patience=_PATIENCE), tell=told)
-            unknowns, iterations = end.best.unknowns, iterations + end.steps
+            end = interior_point(model, unknowns, Limits(steps=min(_STEPS, left), patience=_PATIENCE), tell=told)
+            unknowns, iterations, left = end.best.unknowns, iterations + end.steps, left - end.steps
             if end.told_to_stop or not _holds(end):
                 stopped = Stop.TOLD if end.told_to_stop else Stop.STALLED
                 break

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from cadpanel.delivery.records.study import StudyModel
 from cadpanel.errors import SettingsError
 from cadpanel.fitting import result as fitting
+from cadpanel.kinds import checked
 
 if TYPE_CHECKING:
     import pandas
@@ -34,6 +35,7 @@ class FitResult(fitting.FitResult):
         """The same result with pictures."""
         return FitResult(**{one.name: getattr(found, one.name) for one in fields(fitting.FitResult)})
 
+    @checked
     def plot(self, color: Colour = "deviation", view: View = "outside") -> Figure:
         """All panels.
 
@@ -48,6 +50,7 @@ class FitResult(fitting.FitResult):
 
         return draw_model(self._scene(), color, view)
 
+    @checked
     def plot_deviation(self, view: View = "outside") -> Figure:
         """All panels, coloured by how far the reference lies inside or outside of them.
 
@@ -56,6 +59,7 @@ class FitResult(fitting.FitResult):
         """
         return self.plot("deviation", view)
 
+    @checked
     def plot_seam(self, first: str, second: str) -> Figure:
         """Gap, width, step and kink along the seam between two panels; the one with the larger gap if there are two.
 
@@ -72,6 +76,7 @@ class FitResult(fitting.FitResult):
             raise KeyError(f"'{first}' and '{second}' do not meet along a seam")
         return draw_seam(max(met, key=_largest_gap))
 
+    @checked
     def plot_flat(self, name: str) -> Figure:
         """The flat pattern of a panel's skin, seen from outside.
 
@@ -84,6 +89,7 @@ class FitResult(fitting.FitResult):
 
         return draw_flat(unroll(self.shape(name)))
 
+    @checked
     def to_dataframe(self) -> pandas.DataFrame:
         """One row a panel under its name: feature, deviations and drift in mm, area in m2; needs pandas.
 

@@ -126,3 +126,6 @@ class ProofError(CadpanelError):
     def __init__(self, failures: Sequence[str]) -> None:
         super().__init__(" ".join(failures))
         self.failures = tuple(failures)
+
+    def __reduce__(self) -> tuple[type[ProofError], tuple[tuple[str, ...]]]:
+        return type(self), (self.failures,)

@@ -17,6 +17,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from cadpanel.errors import SettingsError
+from cadpanel.near import near_names
 
 Arguments = ParamSpec("Arguments")
 Given = TypeVar("Given")
@@ -42,7 +43,7 @@ def checked(function: Callable[Arguments, Given]) -> Callable[Arguments, Given]:
         try:
             given = signature.bind(*args, **kwargs).arguments
         except TypeError as error:
-            raise SettingsError(f"{function.__name__}() {error}") from error
+            raise SettingsError(f"{function.__name__}() {error}{_near(error, kwargs, signature)}") from error
         for changes in [value for name, value in given.items() if name == _open_keywords(signature)]:
             given = {**given, **changes}
         for name, kind in _kinds_of(function).items():
@@ -51,6 +52,13 @@ def checked(function: Callable[Arguments, Given]) -> Callable[Arguments, Given]:
         return function(*args, **kwargs)
 
     return with_checked_arguments
+
+
+def _near(error: TypeError, given: Mapping[str, object], signature: inspect.Signature) -> str:
+    """The names of arguments that a keyword nearly is, where it is the keyword that does not go."""
+    known = [one.name for one in signature.parameters.values() if one.name != "self"]
+    wrong = next((word for word in given if word not in known and f"'{word}'" in str(error)), None)
+    return "" if wrong is None else f"; {near_names(wrong, known)}"
 
 
 def _refuse(function: Callable[..., object], name: str, value: object, kind: Any) -> None:
@@ -72,7 +80,12 @@ def _kinds_of(function: Callable[..., object]) -> dict[str, Any]:
     names = vars(sys.modules[function.__module__])
     found: dict[str, Any] = {}
     for one in inspect.signature(function).parameters.values():
-        if one.kind is not one.VAR_KEYWORD:
+        if one.annotation is one.empty:  # as the self of a method
+            continue
+        if one.kind is one.VAR_POSITIONAL:  # they come as a tuple, and the annotation is that of each
+            each = _resolved({one.name: one.annotation}, names)
+            found |= {name: types.GenericAlias(tuple, (kind, ...)) for name, kind in each.items()}
+        elif one.kind is not one.VAR_KEYWORD:
             found |= _resolved({one.name: one.annotation}, names)
         elif isinstance(keywords := names.get(str(one.annotation).removeprefix("Unpack[").rstrip("]")), type):
             found |= _resolved(keywords.__annotations__, vars(sys.modules[keywords.__module__]))

@@ -27,7 +27,7 @@ def options(command: Callable[..., None]) -> dict[str, tuple[Parameter, Any]]:
     """The options of a command by their names on the command line, and what is said of each."""
     found = {}
     for parameter in signature(command, eval_str=True).parameters.values():
-        said = get_args(parameter.annotation)[1]
+        said = get_args(parameter.annotation)[1] if get_args(parameter.annotation) else None
         if isinstance(said, OptionInfo):
             named = [name for name in (said.default, *(said.param_decls or ())) if str(name).startswith("--")]
             found[str(named[0]) if named else f"--{parameter.name}"] = parameter, said

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from cadpanel.delivery.page.html import read_page
 from cadpanel.delivery.page.notebook import fit_numbers
 from cadpanel.delivery.page.numbers import page_numbers
 from cadpanel.delivery.pictures.figure import Picture
+from cadpanel.delivery.records.report import ReportModel, UnitsModel
 from tests.delivered import fitted
 from tests.pages import NAMES, delivery, scene, strange
 
@@ -37,6 +39,33 @@ def test_a_name_that_there_is_not_is_refused_with_what_may_have_been_meant(name,
     for of in (result(), result().reference):
         with pytest.raises(KeyError, match=f"there is no panel '{name}'; {said}"):
             of[name]
+
+
+@pytest.mark.parametrize("place", [0, -1, None, slice(0, 2), ["N 1"]])
+def test_a_panel_is_found_by_its_name_only_and_is_among_them_by_it_too(place):
+    for of in (result(), result().reference):
+        with pytest.raises(KeyError, match=r"found by its name.*; there is 'N 1', 'N 2', 'N 3'"):
+            of[place]
+        assert ("N 1" in of, next(iter(of)) in of, "N 9" in of, place in of) == (True, True, False, False)
+
+
+def test_pictures_refuse_what_they_do_not_know_in_one_sentence():
+    found: Any = result()
+    for call, said in (
+        (lambda: found.plot(colour="gap"), "perhaps 'color' is meant"),
+        (lambda: found.plot_seam("N 1"), "missing a required argument: 'second'"),
+        (lambda: found.plot_seam(0, 1), "'first' of plot_seam[(][)] must be a word"),
+        (lambda: found.plot_flat(["N 1"]), "'name' of plot_flat[(][)] must be a word"),
+    ):
+        with pytest.raises(cp.SettingsError, match=said):
+            call()
+
+
+def test_radii_are_told_in_millimetres_and_not_in_powers_of_ten():
+    figure = result().plot("radius")
+    ticks = [label.get_text() for label in figure.axes[-1].get_xticklabels()]
+    assert len(ticks) == 3
+    assert all(tick.isdigit() for tick in ticks)
 
 
 def test_words_for_things_are_short():
@@ -87,3 +116,11 @@ def test_the_page_of_a_fit_tells_the_numbers_of_its_delivery():
             same = {key: value for key, value in other.items() if isinstance(value, float) and one[key] is not None}
             assert {key: one[key] for key in same} == pytest.approx(same, rel=1e-4)
             assert one.keys() == other.keys()
+
+
+def test_what_functions_give_is_told_in_short_words():
+    report = ReportModel.model_construct(panels=(UnitsModel(length="mm", angle="deg"),) * 200)
+    for thing in (cp.unroll(fitted().shapes[0]), cp.fit_plane(np.random.default_rng(0).random((20, 3))), report):
+        assert len(f"{thing!r}{thing}") < 320
+        assert "array(" not in repr(thing)
+    assert repr(report) == "<ReportModel: 200 panels>"

@@ -38,6 +38,18 @@ def doubled(number: "float", words: "Sequence[str]" = ()) -> float:
     return 2.0 * number * max(len(words), 1)
 
 
+@checked
+def joined(*words: "str") -> str:
+    """Of any number of words."""
+    return "".join(words)
+
+
+def test_any_number_of_arguments_are_each_of_the_kind_that_is_annotated():
+    assert (joined(), joined("a", "b")) == ("", "ab")
+    with pytest.raises(SettingsError, match=r"'words' of joined[(][)] must be a list, of which each is a word"):
+        cast(Any, joined)("a", 2)
+
+
 def test_a_function_refuses_in_one_sentence_and_stays_as_it_is():
     assert doubled(2, words=["a"]) == 4.0
     assert (doubled.__name__, doubled.__doc__) == ("doubled", "What is annotated.")
@@ -47,3 +59,5 @@ def test_a_function_refuses_in_one_sentence_and_stays_as_it_is():
         doubled(2, words="a")
     with pytest.raises(SettingsError, match=r"^doubled\(\) missing a required argument: 'number'$"):
         cast(Any, doubled)()
+    with pytest.raises(SettingsError, match=r"unexpected keyword argument 'word'; perhaps 'words' is meant$"):
+        cast(Any, doubled)(2, word=["a"])

@@ -82,13 +82,18 @@ class _AtomicFit:
     converged: bool
     size: float
 
+    def __repr__(self) -> str:
+        reached = "" if self.converged else ", not converged"
+        off = f"RMS {self.rms:.3g} mm, at most {self.max:.3g} mm{reached}"
+        return f"<{type(self).__name__} of {len(self.residuals)} points: {off}>"
+
     @property
     def normal(self) -> Array:
         """(3,) the surface's unit normal at the point: on the side of the given normals, else away from the axis."""
         return self.frame[:, 2]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlaneFit(_AtomicFit):
     """The plane of least orthogonal squares; covariance of the turns about b and t, and the shift."""
 
@@ -103,7 +108,7 @@ class PlaneFit(_AtomicFit):
         return cls(**_fields(fits, i))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class CylinderFit(_AtomicFit):
     """The cylinder of least orthogonal squares; covariance of turns about b, t, n, the shift and the curvature.
 
@@ -149,7 +154,7 @@ class CylinderFit(_AtomicFit):
         return cls(**_fields(fits, i), curvature=float(fits.curvature[i]))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ConeFit(_AtomicFit):
     """The cone of least orthogonal squares; covariance of turns about b, t, n, the shift, the curvature and the taper.
 

@@ -135,6 +135,12 @@ class Survey:
     curves: tuple[CurveSurvey, ...]
     notes: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return (
+            f"<Survey of '{self.source}': {len(self.faces)} faces, {len(self.surfaces)} surfaces, "
+            f"{len(self.curves)} loose curves, {len(self.notes)} notes>"
+        )
+
 
 def survey(path: str | Path, settings: ReferenceSettings | None = None) -> Survey:
     """Measure what a file holds.

@@ -224,6 +224,44 @@ GLOSSARY: tuple[Term, ...] = (
         also=("job", "job file"),
     ),
     Term(
+        name="radius",
+        meaning="How tightly a cylinder or cone is bent, mm, to the face that is the skin; on a cone it changes along "
+        "the bend, and the tightest counts. --min-radius is what the shop can roll.",
+        also=("min radius",),
+    ),
+    Term(
+        name="oblique cut",
+        meaning="The angle between an end of a panel and its bend, degrees: 90 is square, and the smaller it is the "
+        "more pointed is the panel's corner.",
+    ),
+    Term(
+        name="tolerance",
+        meaning="What is still accepted. Met means that every gap and every limit that was asked for holds; not met "
+        "that at least one does not, and the report says which and where.",
+        also=("limit", "limits", "held"),
+    ),
+    Term(
+        name="blank",
+        meaning="The smallest rectangle of flat sheet that a panel is cut from, mm; --stock says which sheets the "
+        "store has.",
+    ),
+    Term(
+        name="K-factor",
+        meaning="Where in its thickness a bent sheet keeps its length: 0 at the inner face of the bend, 1 at the "
+        "outer, 0.5 in the middle (--k-factor).",
+    ),
+    Term(
+        name="conjugate",
+        meaning="Two directions of a surface are conjugate where it does not twist between them: cuts along one can "
+        "meet bends along the other without a kink (--seams conjugate).",
+    ),
+    Term(
+        name="strip",
+        meaning="A long surface that is cut across into panels (--divide, --panel-length); with --divide strips it is "
+        "cut along, into strips as wide as the deviation allows.",
+        also=("strips",),
+    ),
+    Term(
         name="each alone",
         meaning="A baseline: every panel fitted for itself as near to the drawing as it comes, whatever that leaves "
         "open at the seams. No fit that closes gaps deviates less.",

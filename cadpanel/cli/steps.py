@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import TextIO
 
 from rich.console import Console
@@ -40,11 +41,11 @@ class Steps:
         self._tasks: dict[str, TaskID] = {}
         self._left = TimeLeft(clock)
 
-    def begin(self, step: str, detail: str = "") -> None:
-        """Start a step of unknown length; those before it are done."""
+    def begin(self, step: str, detail: str = "", left: Callable[[], str] = str) -> None:
+        """Start a step of unknown length; those before it are done. `left` says what remains of all, whenever asked."""
         for task in self._tasks.values():
             self._finish(task)
-        self._tasks[step] = self._progress.add_task(step, total=None, detail=detail)
+        self._tasks[step] = self._progress.add_task(step, total=None, detail=listed(detail, left()))
         self._left = TimeLeft(self._clock)
 
     def detail(self, step: str, detail: str) -> None:
@@ -81,10 +82,10 @@ class Steps:
 class ToldSteps(Steps):
     """Steps as lines of JSON on the error stream: their name, how much is done of how much, and a detail."""
 
-    def begin(self, step: str, detail: str = "") -> None:
+    def begin(self, step: str, detail: str = "", left: Callable[[], str] = str) -> None:
         """See `Steps.begin`."""
-        super().begin(step, detail)
-        self._tell(step, 0, 1, detail)
+        super().begin(step, detail, left)
+        self._tell(step, 0, 1, listed(detail, left()))
 
     def count(self, step: str, done: int, of: int) -> None:
         """See `Steps.count`."""
@@ -116,18 +117,19 @@ class WrittenSteps(Steps):
         super().__init__(progress, clock)
         self._pace, self._last = pace, clock()
         self._step, self._detail, self._began = "", "", self._last
+        self._says_left: Callable[[], str] = str
         self._lines = Unsilent(stream, silence, self._at_work)
 
-    def begin(self, step: str, detail: str = "") -> None:
+    def begin(self, step: str, detail: str = "", left: Callable[[], str] = str) -> None:
         """See `Steps.begin`."""
-        super().begin(step, detail)
-        self._step, self._detail, self._began = step, detail, self._clock()
+        super().begin(step, detail, left)
+        self._step, self._detail, self._says_left, self._began = step, detail, left, self._clock()
 
     def count(self, step: str, done: int, of: int) -> None:
         """See `Steps.count`."""
         super().count(step, done, of)
         if of > 1 and DELIVERING.get(step, step) == self._step:
-            self._detail = listed(f"{done} of {of}", self._time_left(self._step, done, of))
+            self._detail, self._says_left = f"{done} of {of}", partial(self._time_left, self._step, done, of)
 
     def solving(self, step: str, count: int, excess: float, rms: float) -> None:
         """See `Steps.solving`."""
@@ -144,7 +146,9 @@ class WrittenSteps(Steps):
         if not self._step:
             return ""
         self._last = self._clock()
-        return listed(f"{self._step}: at work for {self._last - self._began:.0f} s", self._detail)
+        # Told as it is now: a part that takes long makes what is left longer, not what was said before true again.
+        at_work = f"{self._step}: at work for {self._last - self._began:.0f} s"
+        return listed(at_work, self._detail, self._says_left())
 
 
 def _solving(count: int, excess: float, rms: float) -> str:

@@ -86,7 +86,7 @@ def _run(file: Path, how: tuple[ReferenceSettings, ...], settings: tuple[FitSett
         fitted = f"{point.feature_name}, {len(of.panels)} panels, {point.widest_gap:g} mm"
         step = f"Fit {begun} of {fits} at most: {fitted}"
         if count == 0:
-            shown.begin(step, left.said(begun - 1, fits))
+            shown.begin(step, left=partial(left.said, begun - 1, fits))
         else:
             shown.solving(step, count, excess, rms)
 

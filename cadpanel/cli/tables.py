@@ -46,6 +46,7 @@ _WORTH = {
 _MOST_OF_IT, _MOST_SEAMS = 0.5, 3
 _METHODS = {"local": "each alone", "two_stage": "two-stage", "concurrent": "concurrent", "annealing": "annealing"}
 
+_HELD = "Tolerance and limits"
 _MEASURES: tuple[tuple[str, Callable[[SummaryModel], str], str], ...] = (
     ("Largest corner gap, mm", lambda s: length(s.max_corner_gap), "at corners and bend lines"),
     ("Largest seam gap, mm", lambda s: length(s.max_seam_gap), "along the whole seam"),
@@ -73,7 +74,12 @@ def rows(summaries: Sequence[SummaryModel], *, held: bool = True) -> Iterator[tu
         if any(value is not None for value in found):
             yield row.heading, [DASH if value is None else row.form.format(value) for value in found], row.meaning
     if held:
-        yield "Tolerance and limits", ["met" if summary.tolerance_met else "not met" for summary in summaries], ""
+        yield _HELD, ["met" if summary.tolerance_met else "not met" for summary in summaries], ""
+
+
+def headings() -> list[str]:
+    """Of all rows that `rows` may have."""
+    return [*(heading for heading, _, _ in _MEASURES), *(row.heading for limit in LIMITS for row in limit.rows), _HELD]
 
 
 def length(value: float) -> str:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
+from cadpanel.delivery.built_already import built_already
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
@@ -123,7 +124,7 @@ def fill_delivery(
         _write(folder, delivery, first, _part(tell, 0, len(outputs)), helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        proved = prove(folder, delivery, first, helper)
+        proved = prove(folder, delivery, first, helper, built_already(delivery.panels, delivery.shapes))
         if not proved.certificate.failures:
             delivery = replace(delivery, seams=proved.seams)
             _write(folder, delivery, last, _part(tell, len(first), len(outputs)), helper)

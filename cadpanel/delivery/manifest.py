@@ -62,10 +62,25 @@ def changed_files(folder: Path) -> tuple[str, ...]:
     return tuple(name for name, file in stated.items() if not _is(folder / name, file))
 
 
+def unlisted_files(folder: Path) -> tuple[str, ...]:
+    """The files in a folder that its manifest does not tell of, in their order.
+
+    Raises:
+        DeliveryError: the manifest cannot be read.
+    """
+    stated = read_manifest(folder).files
+    return tuple(name for name, _ in _paths(folder) if name not in stated)
+
+
 def _files(folder: Path) -> Iterator[tuple[str, FileModel]]:
+    for name, path in _paths(folder):
+        yield name, _told(path)
+
+
+def _paths(folder: Path) -> Iterator[tuple[str, Path]]:
     for path in sorted(folder.rglob("*"), key=lambda path: path.relative_to(folder).parts):
         if path.is_file() and path != folder / MANIFEST:
-            yield path.relative_to(folder).as_posix(), _told(path)
+            yield path.relative_to(folder).as_posix(), path
 
 
 def _told(path: Path) -> FileModel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sh
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.step.frame_checks import Part, frame_faults
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.outputs.step_files import PANELS, SKINS
@@ -43,13 +44,16 @@ class Proved:
     seams: tuple[SeamModel, ...]
 
 
-def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) -> Proved:
+def prove_steps(
+    folder: Path, contents: Contents, helper: Helper | None = None, built: Mapping[str, Rebuilt] | None = None
+) -> Proved:
     """What panels.step and skins.step in a folder show; seams are seen where both panels are in the files.
 
     Args:
         folder: that holds the files.
         contents: what they must tell of.
         helper: a second interpreter that is running already.
+        built: by name, what bounds panels that were built from the same numbers already; others are built anew.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
@@ -87,7 +91,7 @@ def prove_steps(folder: Path, contents: Contents, helper: Helper | None = None) 
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
     wanted = [_expected_seam(contents.seams[place], moved) for place in there]
-    certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint)
+    certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint, built or {})
     found = dict(zip(there, certificate.clear, strict=True)) if certificate.clear else {}
     record = _record(certificate)
     record = record.model_copy(update={"failures": (*record.failures, *_frame_faults(folder, contents))})

@@ -30,11 +30,13 @@ _OF_THE_FIT = tuple(
     for inside in ("", ".*")
 )
 
+_MET = tuple(f"seams.*.{key}" for key in ("width", "step", "shift", "max_kink"))
 BY_REFERENCE: tuple[Unproved, ...] = (
     Unproved(what="deviation", keys=("panels.*.rms_deviation", "panels.*.max_deviation", "summary.rms_deviation")),
     Unproved(what="Hausdorff distance", keys=("panels.*.hausdorff",)),
     Unproved(what="drift", keys=("panels.*.*drift*", "summary.*drift_*percent", "summary.max_off_level")),
     Unproved(what="turn and unevenness of seams", keys=("seams.*.turn", "seams.*.unevenness")),
+    Unproved(what="width, step, shift and kink of seams", keys=_MET),
 )
 """What only the reference can tell."""
 BY_A_FIT: tuple[Unproved, ...] = (

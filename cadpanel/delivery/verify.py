@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.contents import Contents, Proof
-from cadpanel.delivery.manifest import MANIFEST, changed_files
+from cadpanel.delivery.manifest import MANIFEST, changed_files, unlisted_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.own_files import REPORT
@@ -45,6 +46,10 @@ class Verification:
     failures: tuple[str, ...]
     unproved: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        found = "everything holds" if self.holds else f"{len(self.failures)} failures, first {self.failures[0]:.80}"
+        return f"<Verification of {len(self.report.panels)} panels: {found}>"
+
     @property
     def holds(self) -> bool:
         """Whether the files are what the report promises."""
@@ -76,7 +81,12 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
     certificate = prove(place, contents, outputs).certificate
-    failures = (*_changed(place), *certificate.failures, *check_report(report, shapes, certificate))
+    failures = (
+        *_changed(place),
+        *_unlisted(place, outputs),
+        *certificate.failures,
+        *check_report(report, shapes, certificate),
+    )
     if reference is None:
         return Verification(
             report=report,
@@ -93,6 +103,14 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
 def _changed(place: Path) -> Iterator[str]:
     for name in changed_files(place):
         yield f"'{name}' is not the file that was delivered: its size or SHA-256 is not that in {MANIFEST}."
+
+
+def _unlisted(place: Path, outputs: Sequence[Output]) -> Iterator[str]:
+    """What is said of files of the delivery that its manifest leaves out; others may have put theirs beside them."""
+    own = {REPORT, *(name for output in outputs for name in (*output.files, *output.folders))}
+    for name in unlisted_files(place):
+        if name.split("/", maxsplit=1)[0] in own:
+            yield f"{MANIFEST} does not tell of '{name}', which belongs to the delivery."
 
 
 def _demand_files(place: Path, names: Sequence[str]) -> None:
@@ -123,7 +141,13 @@ def contents_of(report: ReportModel, shapes: Sequence[Built]) -> Contents:
     )
 
 
-def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: Helper | None = None) -> Proved:
+def prove(
+    folder: Path,
+    contents: Contents,
+    outputs: Sequence[Output],
+    helper: Helper | None = None,
+    built: Mapping[str, Rebuilt] | None = None,
+) -> Proved:
     """What reading the files in a folder back shows.
 
     Args:
@@ -131,12 +155,13 @@ def prove(folder: Path, contents: Contents, outputs: Sequence[Output], helper: H
         contents: what they must tell of.
         outputs: those that were written.
         helper: a second interpreter that is running already.
+        built: by name, what bounds panels that were built from the same numbers already; others are built anew.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
     found = _prove_each(folder, contents, outputs)
-    proved = prove_steps(folder, contents, helper)
+    proved = prove_steps(folder, contents, helper, built)
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),

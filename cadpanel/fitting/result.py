@@ -15,7 +15,7 @@ from cadpanel.fitting.measures.verdict import keeps_limits, limits_of, too_obliq
 from cadpanel.fitting.rules.rule import Outcome
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.geometry.panel import Panel
-from cadpanel.near import near_names
+from cadpanel.near import holds, panel_named
 from cadpanel.reference.model import Reference
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.corner_drift import DriftAlong
@@ -147,13 +147,13 @@ class FitResult:
         Raises:
             KeyError: there is none.
         """
-        for shape in self.shapes:
-            if shape.name == name:
-                return shape
-        raise KeyError(f"there is no panel '{name}'; {near_names(name, [shape.name for shape in self.shapes])}")
+        return panel_named(name, self.shapes)
 
     def __getitem__(self, name: str) -> Panel:
         return self.shape(name)
+
+    def __contains__(self, panel: object) -> bool:
+        return holds(panel, self.shapes)
 
     def __len__(self) -> int:
         return len(self.shapes)

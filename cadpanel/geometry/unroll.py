@@ -65,6 +65,9 @@ class FlatPattern:
     tangents: Array
     bends: tuple[FlatBend, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<FlatPattern '{self.name}': {self.feature}, {len(self.owners)} edges, {len(self.bends)} bends>"
+
     def rulings(self, bend: FlatBend, shares: Array) -> Array:
         """(q, 2, 2) rulings of a bend, from end 0 to end 1, at shares (q,) of the sweep that it has at both."""
         pieces = self.curves.take(np.array(bend.at_ends))

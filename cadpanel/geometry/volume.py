@@ -25,7 +25,8 @@ from cadpanel.geometry.vectors import cross
 
 SWEEP_NODES = 48
 _SWEEP_ABSCISSAE, _SWEEP_WEIGHTS = np.polynomial.legendre.leggauss(SWEEP_NODES)
-_SHEET_ABSCISSAE, _SHEET_WEIGHTS = np.polynomial.legendre.leggauss(8)
+QUADRATIC = np.polynomial.legendre.leggauss(3)
+LEANING = np.polynomial.legendre.leggauss(8)
 
 
 def patch_areas(shape: Chain) -> list[float]:
@@ -46,9 +47,11 @@ def sheet_volume(shape: Panel, thickness: float, skin_side: Literal["outer", "in
     With "outer" the skin is the outer face and the sheet lies at -n, with "inner" at +n. The shape must be buildable.
     """
     away = -1.0 if skin_side == "outer" else 1.0
-    depths = 0.5 * thickness * (1.0 + _SHEET_ABSCISSAE)
+    may_lean = any(isinstance(side, ConePatch) and side.half_angle == 0.0 for side in shape.patches)
+    abscissae, weights = LEANING if may_lean else QUADRATIC
+    depths = 0.5 * thickness * (1.0 + abscissae)
     areas = np.array([shape.offset(away * float(depth)).area() for depth in depths])
-    return float(0.5 * thickness * (_SHEET_WEIGHTS @ areas))
+    return float(0.5 * thickness * (weights @ areas))
 
 
 def beyond_quadratic(shape: Panel, depth: float, share: float) -> float:

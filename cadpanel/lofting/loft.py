@@ -68,6 +68,9 @@ class Loft:
     size: float
     segments: tuple[Segment, ...]
 
+    def __repr__(self) -> str:
+        return f"<Loft '{self.name}': {self.rails[0]!r} to {self.rails[1]!r}, {len(self.segments)} segments>"
+
     @property
     def pieces(self) -> tuple[Piece, ...]:
         """All pieces, each of which begins where the one before it ends."""

@@ -103,6 +103,9 @@ class Rail:
     _places: Array = field(init=False, repr=False)
     _breaks: Array = field(init=False, repr=False)
 
+    def __repr__(self) -> str:
+        return f"<Rail '{self.name}': {self.length:.0f} mm, {len(self.stretches)} stretches>"
+
     def __post_init__(self) -> None:
         """Measure its length.
 

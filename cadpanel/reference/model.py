@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.near import near_names
+from cadpanel.near import holds, panel_named
 from cadpanel.reference.settings import ReferenceSettings
 
 
@@ -157,10 +157,10 @@ class Reference:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __getitem__(self, name: str) -> PanelReference:
-        for panel in self.panels:
-            if panel.name == name:
-                return panel
-        raise KeyError(f"there is no panel '{name}'; {near_names(name, [panel.name for panel in self.panels])}")
+        return panel_named(name, self.panels)
+
+    def __contains__(self, panel: object) -> bool:
+        return holds(panel, self.panels)
 
     def __len__(self) -> int:
         return len(self.panels)

@@ -18,6 +18,7 @@ from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Best, Ended, Limits
 from cadpanel.solver.held_model import HeldModel
 from cadpanel.solver.interior_point import Told, interior_point
+from cadpanel.solver.one_thread import on_one_thread
 from cadpanel.solver.stop import Stop
 
 # The factor is known closely enough where the next one would be nearer than this, and is looked for this often.
@@ -82,6 +83,7 @@ class HeldSolution:
         return HeldSolution(self.end.mixed(other.end, where, blocks), stopped, self.iterations + other.iterations)
 
 
+@on_one_thread
 def hold_or_give_way(
     model: HeldModel,
     start: Array,

@@ -20,6 +20,7 @@ from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.blocks import BlockPattern, Normal
 from cadpanel.solver.bounds import Bounds, bounded_step
 from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
+from cadpanel.solver.one_thread import on_one_thread
 from cadpanel.solver.stop import Stop
 
 # Marquardt's scale of an unknown that no residual sees is 0; this share of the block's largest keeps the step finite.
@@ -93,6 +94,7 @@ class Solution:
         return Stop.AT_REST if self.converged.all() else Stop.STEP_LIMIT
 
 
+@on_one_thread
 def levenberg_marquardt(model: Model, start: Array, stopping: Stopping, damping: float | Array = 1e-3) -> Solution:
     """Minimise the model's cost from `start` (count, size).
 

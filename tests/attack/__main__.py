@@ -20,16 +20,21 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from cadpanel.brep.kernel.messages import silence_kernel
 from tests.attack.fuzz import KINDS, Fuzzer
 from tests.attack.kill import GONE_WITHIN, Killer
 from tests.attack.tamper import Tamperer
 from tests.attack.workers import Ended, tried
+
+TELL = 100
+"""Inputs after which it is said how many are done."""
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """See the module's text."""
     options = _options(words)
     began = time.monotonic()
+    silence_kernel()  # which tells of every file that it writes
     with tempfile.TemporaryDirectory(prefix="attack-") as name:
         came_through = {"fuzz": fuzz, "tamper": tamper, "kill": kill}[options.attack](Path(name), options)
     print(f"{came_through} came through; {time.monotonic() - began:.0f} s")
@@ -70,10 +75,12 @@ def kill(made: Path, options: argparse.Namespace) -> int:
 
 
 def _told(tries: Iterable[Ended], *, by_kind: bool) -> int:
-    """Say what became of inputs; how many have come through."""
+    """Say what became of inputs, and from time to time how many are done; how many have come through."""
     found, bad = [], 0
     for one in tries:
         found.append(one)
+        if len(found) % TELL == 0:
+            print(f"{len(found)} tried so far", file=sys.stderr, flush=True)
         if one.end.split(":")[0].isupper():
             bad += 1
             print(f"{one.kind}, seed {one.seed}: {one.end}", flush=True)

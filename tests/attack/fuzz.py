@@ -23,7 +23,7 @@ from cadpanel.delivery.manifest import write_manifest
 from cadpanel.delivery.verify import verify
 from cadpanel.errors import CadpanelError
 from tests.attack.damage import damaged, json_damaged, lines_damaged
-from tests.attack.made import copied, models, plain_delivery, rich_delivery
+from tests.attack.made import copied, delivery_of, models, plain_delivery
 from tests.brep.files.mutants import rhino_mutant, step_mutant
 from tests.forking import SERVER, forking
 
@@ -64,15 +64,16 @@ VERIFIED: dict[str, tuple[str, Change]] = {
     "skins.step": ("skins.step", _half(_STEP, damaged)),
 }
 """Files of a delivery with nothing else in it that `verify` reads."""
-RICH: dict[str, tuple[str, Change]] = {
-    "DXF": ("flat/N-02.dxf", _half(damaged, lines_damaged)),
-    "GLB": ("panels.glb", damaged),
-    "FCStd": ("panels.FCStd", damaged),
-    "page": ("report.html", damaged),
+OUTPUTS: dict[str, tuple[str, Change]] = {
+    "flats": ("flat/N-02.dxf", _half(damaged, lines_damaged)),
+    "glb": ("panels.glb", damaged),
+    "freecad": ("panels.FCStd", damaged),
+    "html": ("report.html", damaged),
     "schedule": ("schedule.csv", damaged),
+    "setting-out": ("setting_out.csv", _half(damaged, lines_damaged)),
 }
-"""Files of a delivery with everything in it."""
-KINDS = (*READ, *VERIFIED, *RICH)
+"""Files of deliveries that have one output more each, by its name."""
+KINDS = (*READ, *VERIFIED, *OUTPUTS)
 
 
 class Fuzzer:
@@ -81,7 +82,8 @@ class Fuzzer:
     def __init__(self, made: Path) -> None:
         """Make what is damaged, once for all processes."""
         self._files = models(made)
-        self._plain, self._rich = plain_delivery(made), rich_delivery(made)
+        self._plain = plain_delivery(made)
+        self._with = {output: delivery_of(made, output) for output in OUTPUTS}
         self._stack = ExitStack()
         client.stop_reader()  # every process has its own
 
@@ -101,8 +103,8 @@ class Fuzzer:
             path = self._place / name
             path.write_bytes(change(self._files[name], seed))
             return self._read(path, seed)
-        name, change = VERIFIED[kind] if kind in VERIFIED else RICH[kind]
-        folder = copied(self._plain if kind in VERIFIED else self._rich, self._place / "out")
+        name, change = VERIFIED[kind] if kind in VERIFIED else OUTPUTS[kind]
+        folder = copied(self._with.get(kind, self._plain), self._place / "out")
         path = folder / name
         path.write_bytes(change(path.read_bytes(), seed))
         if name != "manifest.json":

@@ -25,7 +25,8 @@ from tests.rhino_files import rhino
 
 MESH = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n"
 SHEET = SheetSettings(joint=10.0)
-SHOP = ShopSettings(fixings=(6.5, 400.0, 20.0), returns=(30.0, 3.0), material="aluminium", stock=((1500.0, 3000.0),))
+# Few holes: of each the kernel checks two rims and a wall, over and over.
+SHOP = ShopSettings(fixings=(6.5, 2000.0, 20.0), returns=(30.0, 3.0), material="aluminium", stock=((1500.0, 3000.0),))
 
 
 def models(folder: Path) -> dict[str, bytes]:
@@ -60,6 +61,12 @@ def rich_delivery(folder: Path) -> Path:
     """The strip with joints, holes, returns and every output that needs no asking."""
     deliver(strip_result(folder), folder / "rich", SHEET, SHOP)
     return folder / "rich"
+
+
+def delivery_of(folder: Path, output: str) -> Path:
+    """The strip as STEP files, report and one output more: all that `verify` need look at where that is attacked."""
+    cp.deliver(strip_result(folder), folder / output, joint=10.0, outputs=output)
+    return folder / output
 
 
 def plain_delivery(folder: Path) -> Path:

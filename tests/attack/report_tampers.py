@@ -90,6 +90,11 @@ def _no_last_panel(content: Content) -> None:
     content["reference"] |= {"panels": len(content["panels"]), "seams": len(content["seams"])}
 
 
+def _a_cone_called_a_cylinder(content: Content) -> None:
+    cone = next(ruling for ruling in content["panels"][0]["rulings"] if ruling["half_angle"])
+    cone["half_angle"] = 0.0
+
+
 def _all_rulings_moved(content: Content) -> None:
     for panel in content["panels"]:
         for ruling in panel["rulings"]:
@@ -123,7 +128,7 @@ BY_HAND: dict[str, Change] = {
     "rulings moved": _all_rulings_moved,
     "rulings left out": _put("panels", 0, "rulings", value=[]),
     "a panel moved in all its numbers": _everything_moved,
-    "a cone called a cylinder": _put("panels", 0, "rulings", 1, "half_angle", value=0.0),
+    "a cone called a cylinder": _a_cone_called_a_cylinder,
     "a bend of a plane": _put("panels", 0, "rulings", 0, "radius", value=500.0),
     "a joint of 12 for 10": _put("settings", "joint", value=12.0),
     "no joint": _put("settings", "joint", value=0.0),

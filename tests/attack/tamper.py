@@ -1,21 +1,26 @@
 """A delivery tampered with in every way that is known: `verify` must notice it, or list as not proved what was changed.
 
-Whoever tampers writes the manifest anew, so that nothing but the proof can tell.
+Whoever tampers writes the manifest anew, so that nothing but the proof can tell. What the kernel makes of a file, or of
+numbers, is asked once: most kinds leave the STEP files as they are.
 """
 
 from __future__ import annotations
 
 import json
+import os
+import pickle
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import ExitStack
 from fnmatch import fnmatchcase
 from functools import cache, partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, ParamSpec, TypeVar
 
 from cadpanel.brep.isolation import client
+from cadpanel.brep.proof import certificate, parallel
+from cadpanel.delivery.document import proof as document
 from cadpanel.delivery.manifest import write_manifest
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.report import read_report
@@ -78,6 +83,16 @@ class Tamperer:
         self._place = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="tamper-")))
         fork = self._stack.enter_context(forking())
         setattr(client, "interpreter", lambda _: fork(SERVER))  # noqa: B010 - as tests do
+        inspected = _once(parallel.inspect_files, lambda *files, **_: _contents(*files[:2]))
+        rebuilt = _once(parallel.rebuild, lambda _, sheets, *__: pickle.dumps(sheets))
+        kept = _once(parallel.inspect_archive, _contents)
+        for place, name, work in (
+            (certificate, "inspect_files", inspected),
+            (certificate, "rebuild", rebuilt),
+            (document, "inspect_archive", kept),
+        ):
+            assert hasattr(place, name)
+            setattr(place, name, work)
 
     def attempt(self, name: str, _seed: int = 0) -> str:
         """What becomes of one."""
@@ -112,6 +127,27 @@ class Tamperer:
         listed = (*BY_REFERENCE, *BY_A_FIT, *IN_NO_FILE)
         words = {one.what for one in listed if any(fnmatchcase(kind.key, key) for key in one.keys)}
         return "listed as not proved" if words & set(found.unproved) else UNNOTICED
+
+
+Given = ParamSpec("Given")
+Found = TypeVar("Found")
+
+
+def _once(work: Callable[Given, Found], known_by: Callable[Given, Hashable]) -> Callable[Given, Found]:
+    """Work that is done once for whatever it is known by."""
+    done: dict[Hashable, Found] = {}
+
+    def remembered(*args: Given.args, **kwargs: Given.kwargs) -> Found:
+        key = known_by(*args, **kwargs)
+        if key not in done:
+            done[key] = work(*args, **kwargs)
+        return done[key]
+
+    return remembered
+
+
+def _contents(*files: str | os.PathLike[str]) -> Hashable:
+    return tuple(Path(file).read_bytes() if Path(file).is_file() else None for file in files)
 
 
 def _report(change: Callable[[object], None], folder: Path) -> None:

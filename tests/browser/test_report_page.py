@@ -182,6 +182,38 @@ def test_tables_sort_and_are_searched(page: Any) -> None:
     assert shown == [NAMES[2]]
 
 
+def test_blanks_about_a_name_are_nothing_that_is_looked_for(page: Any) -> None:
+    looked = "const e = document.getElementById('find'); e.value = arguments[0]; e.dispatchEvent(new Event('input'));"
+    page.execute_script(looked, f"  {NAMES[1].upper()}|{NAMES[2]} ")
+    links = page.find_elements("css selector", "#pane-seams tr:not([hidden]) .link")
+    assert [link.get_attribute("textContent") for link in links] == [SEAMS[1]]
+
+
+def test_a_section_leaves_something_and_gives_way_to_what_is_looked_for(page: Any) -> None:
+    told = (
+        "const told = (id, value, event) => { const e = document.getElementById(id); e.value = value; "
+        "e.dispatchEvent(new Event(event)); }; told('axis', '0', 'change'); told('cut-from', 1000, 'input');"
+        "return ['cut-from', 'cut'].map((id) => Number(document.getElementById(id).value));"
+    )
+    start, stop = page.execute_script(told)
+    assert 0 < start < stop == 500
+    axis = page.find_element("id", "axis")
+    page.execute_script("cadpanel.choose(arguments[0])", NAMES[0])
+    page.execute_script("cadpanel.choose(arguments[0])", NAMES[2])
+    assert axis.get_attribute("value") == ""  # one of the two ends lies outside
+
+
+def test_the_right_button_chooses_nothing(page: Any) -> None:
+    from selenium.webdriver import ActionChains
+
+    canvas = page.find_element("id", "canvas")
+    x, y = page.execute_script("return cadpanel.placeOf(arguments[0])", NAMES[1])
+    ActionChains(page).move_to_element_with_offset(
+        canvas, x - canvas.size["width"] / 2, y - canvas.size["height"] / 2
+    ).context_click().perform()
+    assert chosen(page) == ""
+
+
 def test_the_keyboard_turns_the_picture_and_lets_go(page: Any) -> None:
     canvas = page.find_element("id", "canvas")
     page.execute_script("cadpanel.choose(arguments[0])", NAMES[1])

@@ -68,6 +68,24 @@ def test_lines_in_a_pipe_say_it_too_and_each_step_begins_its_own_clock() -> None
     assert lines[-1] == "Build solids: at work for 2 s, 1 of 4, about 6 s left"
 
 
+def test_what_is_left_is_told_as_it_is_when_it_is_told() -> None:
+    clock, stream = Clock(), io.StringIO()
+    shown = WrittenSteps(Progress(disable=True), stream, 0.01, 0.0, clock)
+    shown.count("build", 0, 4)
+    clock.now += 6.0
+    shown.count("build", 3, 4)
+    clock.now += 60.0
+    while "66 s" not in stream.getvalue():
+        pass
+    whole = TimeLeft(clock)
+    shown.begin("Fit 2 of 3", left=lambda: whole.said(1, 3))
+    assert shown._at_work() == "Fit 2 of 3: at work for 0 s"
+    clock.now += 10.0
+    assert shown._at_work() == "Fit 2 of 3: at work for 10 s, about 20 s left"
+    shown.close()
+    assert "Build solids: at work for 66 s, 3 of 4, about 20 s left\n" in stream.getvalue()
+
+
 def test_regions_that_were_made_tell_of_those_that_are_left_and_kept_ones_do_not() -> None:
     clock, stream = Clock(), io.StringIO()
     shown = RegionLines(Progress(disable=True), 4, told=False, stream=stream, clock=clock)

@@ -37,6 +37,16 @@ def test_it_draws_without_a_screen(run, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_the_page_itself_may_be_named_and_what_only_pictures_have_is_refused(run, tmp_path, monkeypatch):
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    page = write_page(tmp_path)
+    assert run("view", page).code == 0
+    for words, said in ((("--color", "gap"), "go with --png"), (("--png", tmp_path / "a.jpg"), "let it end in .png")):
+        answer = run("view", page, *words)
+        assert (answer.code, answer.is_one_sentence()) == (2, True)
+        assert said in answer.err
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from cadpanel.delivery.manifest import MANIFEST, changed_files, read_manifest, write_manifest
+from cadpanel.delivery.manifest import MANIFEST, changed_files, read_manifest, unlisted_files, write_manifest
 from cadpanel.errors import DeliveryError
 
 
@@ -37,6 +37,7 @@ def test_a_file_that_was_changed_or_taken_away_is_named_and_one_that_came_is_nob
     (folder / "flat" / "all.dxf").unlink()
     (folder / "notes.txt").write_bytes(b"mine")
     assert changed_files(folder) == ("flat/all.dxf", "panels.step")
+    assert unlisted_files(folder) == ("notes.txt",)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from cadpanel.fitting.measures.deviation import deviations
 from cadpanel.geometry.shape import PolygonShape
 from cadpanel.geometry.skin_mesh import skin_mesh
 from tests.instances import NAMES, random_polygon, random_shapes
+from tests.shapes import folded_panel
 
 
 def area_and_normal(mesh):
@@ -47,3 +50,12 @@ def test_a_polygon_with_a_notch_is_filled_up_to_its_outline_and_no_farther(tip):
     area, doubled = area_and_normal(skin_mesh(shape))
     assert area == pytest.approx(shape.area())
     assert (doubled[:, 2] > 0.0).all()
+
+
+@pytest.mark.parametrize("degrees", [5.0, 95.0, 200.0])
+def test_facets_of_a_bend_turn_by_ten_degrees_at_most_and_by_no_less_than_looks_ask_for(degrees):
+    shape = folded_panel(radius=300.0, sweep=np.radians(degrees), widths=(50.0, 50.0))
+    _, doubled = area_and_normal(skin_mesh(shape))
+    turns = np.unique(np.round(np.degrees(np.arctan2(doubled[:, 1], doubled[:, 2])), 6) % 360.0)
+    facets = len(turns) - 2  # those of both flanges, along which the bend begins and ends
+    assert facets == max(4, math.ceil(round(degrees / 10.0, 9)))

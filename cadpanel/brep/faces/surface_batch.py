@@ -18,7 +18,7 @@ from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Pln, gp_Pnt, gp_Vec
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.brep.kernel.splines import numbers
+from cadpanel.brep.kernel.splines import numbers, surface_poles
 from cadpanel.geometry.spline_surface import SplineSurface, SplineSurfaces
 
 
@@ -162,16 +162,10 @@ def _plain(spline: Geom_BSplineSurface) -> SplineSurface:
         spline = cast(Geom_BSplineSurface, spline.Copy())
         spline.SetUNotPeriodic()
         spline.SetVNotPeriodic()
-    rows, columns, kernel_poles = range(1, spline.NbUPoles() + 1), range(1, spline.NbVPoles() + 1), spline.Poles()
-    pole = kernel_poles.Value
-    poles = np.array([pole(i, j).Coord() for i in rows for j in columns])
-    if spline.IsURational() or spline.IsVRational():
-        weights = np.array([spline.Weight(i, j) for i in rows for j in columns])[:, None]
-        poles = np.hstack([weights * poles, weights])
     return SplineSurface(
         degrees=(spline.UDegree(), spline.VDegree()),
         knots=(numbers(spline.UKnotSequence()), numbers(spline.VKnotSequence())),
-        poles=poles.reshape(len(rows), len(columns), -1),
+        poles=surface_poles(spline),
         bounds=np.array(spline.Bounds()).reshape(2, 2),
     )
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import BytesIO
 
 import numpy as np
+from OCP.BinTools import BinTools_SurfaceSet
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
-from OCP.Geom import Geom_BSplineCurve
+from OCP.Geom import Geom_BSplineCurve, Geom_BSplineSurface
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve
 from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Shape
 from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d, TColgp_Array2OfPnt
@@ -19,12 +21,30 @@ from cadpanel.arrays import Array, IntArray
 from cadpanel.brep.kernel import points as kernel
 
 DEGREE = 3
+# Bytes of a B-spline surface before its poles: its kind, four flags, two degrees, and numbers of poles and knots.
+_BEFORE_POLES = 1 + 4 + 2 * 2 + 4 * 4
 
 
 def numbers(array: TColStd_Array1OfReal) -> Array:
     """The kernel's array of n reals as (n,)."""
     # Not by iteration, which takes the kernel's binding forty times as long.
     return np.array([array.Value(index) for index in range(array.Lower(), array.Upper() + 1)])
+
+
+def surface_poles(spline: Geom_BSplineSurface) -> Array:
+    """(m, n, 3) poles of a surface along u and v, mm; of a rational one (m, n, 4), homogeneous: weighted, and weights.
+
+    They come in the kernel's binary form, at once: asked for one by one they take thirty times as long.
+    """
+    only, stream = BinTools_SurfaceSet(), BytesIO()
+    only.Add(spline)
+    only.Write(stream)
+    data = stream.getvalue()
+    shape, width = (spline.NbUPoles(), spline.NbVPoles()), 4 if spline.IsURational() or spline.IsVRational() else 3
+    at = data.index(b"\n") + 1 + _BEFORE_POLES
+    poles = np.frombuffer(data, "<f8", shape[0] * shape[1] * width, at).reshape(*shape, width).astype(float)
+    poles[..., :3] *= poles[..., 3:] if width > 3 else 1.0
+    return poles
 
 
 def real_array(values: Array) -> TColStd_Array1OfReal:

@@ -51,11 +51,13 @@ def difference(found: Boundary, wanted: Boundary) -> str | None:
     for what, own, other in counts:
         if len(own) != len(other):
             return f"has {len(own)} {what} instead of {len(other)}"
-    for what, apart in (("a vertex", _vertices_apart(found, wanted)), ("an edge", _edges_apart(found, wanted))):
-        _, off = _pairs(apart)
-        if not off <= SAME_PLACE:
-            return f"has {what} {off:.3g} mm from its place"
-    return _faces_differ(found, wanted, _pairs(_edges_apart(found, wanted))[0])
+    _, off = _pairs(_vertices_apart(found, wanted))
+    if not off <= SAME_PLACE:
+        return f"has a vertex {off:.3g} mm from its place"
+    edges, off = _pairs(_edges_apart(found, wanted))
+    if not off <= SAME_PLACE:
+        return f"has an edge {off:.3g} mm from its place"
+    return _faces_differ(found, wanted, edges)
 
 
 def edges_off(found: Boundary, wanted: Boundary) -> float:
@@ -106,17 +108,37 @@ def _edges_of(boundary: Boundary, face: int) -> frozenset[int]:
 
 def _surfaces_differ(found: Array, wanted: Array, points: Array) -> str | None:
     """What tells surfaces (m, 9) apart from others at points (m, k, 3) on them."""
-    known = _known(wanted)
-    if (_known(found) != known).any() or (_round(found) != _round(wanted))[known].any():
+    if not _same_kind(found, wanted).all():
         return "has a face of another kind"
-    found, wanted, points = found[known][:, None], wanted[known][:, None], points[known]
-    off = np.abs(_height(points, found)).max(initial=0.0)
+    known = _known(wanted)
+    heights, turns = _apart(found[known], wanted[known], points[known])
+    off, turned = heights.max(initial=0.0), turns.max(initial=0.0)
     if not off <= SAME_PLACE:
         return f"has a face {off:.3g} mm from its place"
-    turned = norm(surface_normals(points, found) - surface_normals(points, wanted)).max(initial=0.0)
     if not turned <= SAME_WAY:
         return f"has a face that looks {min(turned, 2.0):.3g} rad another way"
     return None
+
+
+def surfaces_agree(found: Array, wanted: Array, points: Array) -> BoolArray:
+    """(m,) whether surfaces (m, 9) are others, as far as points (m, k, 3) on them tell."""
+    agree, known = _same_kind(found, wanted), _known(wanted)
+    heights, turns = _apart(found[known], wanted[known], points[known])
+    agree[known] &= (heights <= SAME_PLACE) & (turns <= SAME_WAY)
+    return agree
+
+
+def _same_kind(found: Array, wanted: Array) -> BoolArray:
+    """(m,) whether both are flat, or both round, or both of a kind that is not known."""
+    known = _known(wanted)
+    return np.asarray((_known(found) == known) & ((_round(found) == _round(wanted)) | ~known))
+
+
+def _apart(found: Array, wanted: Array, points: Array) -> tuple[Array, Array]:
+    """(m,) how far points (m, k, 3) lie off surfaces (m, 9), mm, and (m,) how far normals are from others, at most."""
+    heights = np.abs(_height(points, found[:, None]))
+    turns = norm(surface_normals(points, found[:, None]) - surface_normals(points, wanted[:, None]))
+    return np.asarray(heights.max(axis=-1, initial=0.0)), np.asarray(turns.max(axis=-1, initial=0.0))
 
 
 def _known(surfaces: Array) -> BoolArray:

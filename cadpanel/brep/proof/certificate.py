@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
 from cadpanel.brep.proof.hole_checks import check_holes
 from cadpanel.brep.proof.overlaps import unparted
 from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, rebuild
-from cadpanel.brep.proof.rebuilt import unlike_rebuilt
+from cadpanel.brep.proof.rebuilt import Rebuilt, unlike_rebuilt
 from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
 from cadpanel.brep.proof.stated_checks import check_stated
@@ -97,6 +98,7 @@ def certify(
     seams: Sequence[ExpectedSeam] = (),
     helper: Helper | None = None,
     joint: float | None = None,
+    built: Mapping[str, Rebuilt] = MappingProxyType({}),
 ) -> Certificate:
     """Read both files and prove them against the expected numbers.
 
@@ -107,6 +109,8 @@ def certify(
         seams: which of their edges meet.
         helper: an interpreter that runs already, to help.
         joint: the width of the joint that was asked for, mm; None where none was promised, not even that sheets touch.
+        built: by name, what bounds panels that were built from the numbers of their sheets already; others are built
+            anew where there are numbers.
 
     Raises:
         DeliveryError: if a file cannot be read at all.
@@ -138,8 +142,9 @@ def certify(
             if panel.flat is not None:
                 read = solid_of[panel.name], skin_of[panel.name]
                 flats.append(FlatFacts(panel.flat, panel.far_planes, *read, panel.holes))
-    sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None}
-    failures += unlike_rebuilt([*sheets], rebuild(panels_step, [*sheets.values()], helper), solid_of, skin_of)
+    sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None and panel.name not in built}
+    anew = rebuild(panels_step, [*sheets.values()], helper)
+    failures += unlike_rebuilt([*built, *sheets], [*built.values(), *anew], solid_of, skin_of)
     flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)
     clear = [] if joint is None else clearances(panels, solid_of, seams, joint, failures)

@@ -14,7 +14,7 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepTools import BRepTools
 from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Ellipse, GeomAbs_Line, GeomAbs_Plane
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.gp import gp_Ax2, gp_Dir, gp_Identity, gp_Pnt, gp_Translation
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED, TopAbs_SHELL, TopAbs_SOLID, TopAbs_VERTEX, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
@@ -40,6 +40,8 @@ RIM_POINTS = 2 * _EDGE_POINTS
 _ROUND = {GeomAbs_Cone: "cone", GeomAbs_Cylinder: "cylinder"}
 
 
+Point = tuple[float, float, float]
+"""Coordinates, mm."""
 Packed = list[tuple[str, bytes, Stated]]
 """Named shapes in the kernel's binary form, which keeps every digit, and what the file says of them besides."""
 
@@ -150,39 +152,51 @@ def boundary_of(shape: TopoDS_Shape) -> Boundary:
 
 
 class _Edge(NamedTuple):
-    """An edge of a shape, with the indices of the faces on which it lies (twice the same one for a seam of a face)."""
+    """An edge of a shape.
+
+    Attributes:
+        edge: the kernel's.
+        faces: on which it lies, by their places; twice the same one for a seam of a face.
+        curve: its curve.
+        range: first and last parameter of that.
+        points: EDGE_POINTS along it; a degenerate one stays in its vertex.
+        ends: its two vertices.
+    """
 
     edge: TopoDS_Edge
     faces: list[int]
     curve: BRepAdaptor_Curve
-
-    @property
-    def range(self) -> tuple[float, float]:
-        """Its first and its last parameter."""
-        return self.curve.FirstParameter(), self.curve.LastParameter()
+    range: tuple[float, float]
+    points: list[Point]
+    ends: tuple[Point, Point]
 
 
 def _boundary(shape: TopoDS_Shape, edges: Sequence[_Edge], surfaces: Sequence[list[float] | None]) -> Boundary:
     return Boundary(
         vertices=vertices_of(shape),
-        edges=np.array([_points(edge) for edge in edges]).reshape(-1, EDGE_POINTS, 3),
+        edges=np.array([edge.points for edge in edges]).reshape(-1, EDGE_POINTS, 3),
         edge_faces=np.array([(*edge.faces, -1)[:2] for edge in edges], dtype=np.intp).reshape(-1, 2),
         surfaces=np.array([numbers or [np.nan] * 9 for numbers in surfaces]).reshape(-1, 9),
     )
 
 
-def _points(edge: _Edge) -> list[tuple[float, ...]]:
-    """Points of an edge at equal steps of its parameter; a degenerate one stays in its vertex."""
-    if BRep_Tool.Degenerated_s(edge.edge):
-        return [BRep_Tool.Pnt_s(TopExp.FirstVertex_s(edge.edge)).Coord()] * EDGE_POINTS
-    (start, stop), value = edge.range, edge.curve.Value
+def _edge_of(edge: TopoDS_Edge) -> _Edge:
+    """An edge of which the faces are not known yet, its points at equal steps of its parameter."""
+    curve = BRepAdaptor_Curve(edge)
+    start, stop, value = curve.FirstParameter(), curve.LastParameter(), curve.Value
+    first, last = (BRep_Tool.Pnt_s(end).Coord() for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge)))
+    if BRep_Tool.Degenerated_s(edge):
+        return _Edge(edge, [], curve, (start, stop), [first] * EDGE_POINTS, (first, last))
     step = (stop - start) / (EDGE_POINTS - 1)  # NumPy's linspace takes as long as the kernel
-    return [value(start + place * step).Coord() for place in range(EDGE_POINTS - 1)] + [value(stop).Coord()]
+    points = [value(start + place * step).Coord() for place in range(EDGE_POINTS - 1)] + [value(stop).Coord()]
+    return _Edge(edge, [], curve, (start, stop), points, (first, last))
 
 
 def _at_home(shape: TopoDS_Shape) -> tuple[TopoDS_Shape, Array]:
     """A shape in its own coordinates, and where their origin lies; one that is turned as well is left as it is."""
     location = shape.Location().Transformation()
+    if location.Form() in (gp_Identity, gp_Translation):
+        return shape.Located(TopLoc_Location()), np.array(location.TranslationPart().Coord())
     turn = [[location.VectorialPart().Value(row, column) for column in (1, 2, 3)] for row in (1, 2, 3)]
     if np.abs(np.array(turn) - np.eye(3)).max() > _NO_TURN:
         return shape, np.zeros(3)
@@ -194,7 +208,7 @@ def vertices_of(shape: TopoDS_Shape) -> Array:
     known = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, TopAbs_VERTEX, known)
     vertices = (TopoDS.Vertex_s(known.FindKey(index)) for index in range(1, known.Extent() + 1))
-    return np.array([_xyz(BRep_Tool.Pnt_s(vertex)) for vertex in vertices]).reshape(-1, 3)
+    return np.array([BRep_Tool.Pnt_s(vertex).Coord() for vertex in vertices]).reshape(-1, 3)
 
 
 def _edges_with_faces(faces: list[TopoDS_Face]) -> list[_Edge]:
@@ -202,10 +216,10 @@ def _edges_with_faces(faces: list[TopoDS_Face]) -> list[_Edge]:
     known = TopTools_IndexedMapOfShape()
     found: list[_Edge] = []
     for index, face in enumerate(faces):
-        for edge in edges_of(face):
+        for edge in shapes_of(face, TopAbs_EDGE):
             place = known.Add(edge)
             if place > len(found):
-                found.append(_Edge(edge, [], BRepAdaptor_Curve(edge)))
+                found.append(_edge_of(TopoDS.Edge_s(edge)))
             found[place - 1].faces.append(index)
     return found
 
@@ -231,15 +245,11 @@ def _surface(face: TopoDS_Face) -> tuple[str, list[float] | None]:
 
 def _straight(
     edge: _Edge, first: list[float] | None, second: list[float] | None
-) -> tuple[list[list[float]], list[list[float]]] | None:
+) -> tuple[tuple[Point, Point], list[list[float]]] | None:
     """Ends and surfaces of a straight edge between two exact faces, else None."""
     if first is None or second is None or edge.curve.GetType() != GeomAbs_Line:
         return None
-    return _ends(edge.edge), [first, second]
-
-
-def _ends(edge: TopoDS_Edge) -> list[list[float]]:
-    return [_xyz(BRep_Tool.Pnt_s(end)) for end in (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))]
+    return edge.ends, [first, second]
 
 
 def _inner_wires(face: TopoDS_Face) -> list[TopoDS_Shape]:
@@ -271,13 +281,12 @@ def _sampled(edges: Sequence[_Edge]) -> Array:
     return np.array(found).reshape(-1, POINTS, 3)
 
 
-def _piece(edge: _Edge) -> tuple[list[list[float]], list[list[float]]] | None:
+def _piece(edge: _Edge) -> tuple[list[Sequence[float]], tuple[Point, Point]] | None:
     """An edge as rows (center, cosine axis, sine axis, [start, stop, is arc]) and its ends; None if neither."""
     curve, (start, stop) = edge.curve, edge.range
     if curve.GetType() == GeomAbs_Line:
-        origin, target = _xyz(curve.Value(start)), _xyz(curve.Value(stop))
-        way = [there - here for here, there in zip(origin, target, strict=True)]
-        rows = [origin, way, [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+        (x, y, z), (to_x, to_y, to_z) = edge.points[0], edge.points[-1]
+        rows: list[Sequence[float]] = [(x, y, z), (to_x - x, to_y - y, to_z - z), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
     elif curve.GetType() in (GeomAbs_Ellipse, GeomAbs_Circle):
         axes, major, minor = _conic(curve)
         rows = [
@@ -288,7 +297,7 @@ def _piece(edge: _Edge) -> tuple[list[list[float]], list[list[float]]] | None:
         ]
     else:
         return None
-    return rows, _ends(edge.edge)
+    return rows, edge.ends
 
 
 def _conic(curve: BRepAdaptor_Curve) -> tuple[gp_Ax2, float, float]:
@@ -300,7 +309,7 @@ def _conic(curve: BRepAdaptor_Curve) -> tuple[gp_Ax2, float, float]:
     return ellipse.Position(), ellipse.MajorRadius(), ellipse.MinorRadius()
 
 
-def _pieces(rows: list[list[list[float]]]) -> CurvePieces:
+def _pieces(rows: Sequence[Sequence[Sequence[float]]]) -> CurvePieces:
     table = np.array(rows).reshape(-1, 4, 3)
     return CurvePieces(
         centers=table[:, 0],

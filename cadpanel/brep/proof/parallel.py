@@ -187,7 +187,7 @@ def rebuild(
         DeliveryError: if the kernel crashes over one of them or does not end.
     """
     file, path = _File(READER, Path(panels_step)), Path(panels_step)
-    if helper is None:
+    if helper is None or len(sheets) < CHUNK:
         return file.rebuilt(sheets)
     half = len(sheets) // 2
     others = helper.rebuild(path, sheets[half:])

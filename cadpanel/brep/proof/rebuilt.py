@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from cadpanel.brep.proof.boundary import Boundary, difference
+from cadpanel.brep.proof.same_boundaries import same_boundaries
 from cadpanel.brep.proof.shape_facts import ShapeFacts
 from cadpanel.errors import PanelError
 
@@ -35,10 +38,12 @@ def unlike_rebuilt(
     for name, own in zip(names, built, strict=True):
         if isinstance(own, PanelError):
             yield f"Panel '{name}': no sheet can be built from the numbers in the report ({own.reason.rstrip('.')})."
-            continue
-        for label, found, wanted in (("solid", solids, own.solid), ("skin", skins, own.skin)):
-            if name not in found:
-                continue
-            fault = difference(found[name].boundary, wanted)
-            if fault is not None:
-                yield f"Panel '{name}': its {label} is not what the numbers in the report make: it {fault}."
+    known = [(name, own) for name, own in zip(names, built, strict=True) if isinstance(own, Rebuilt)]
+    pairs = [("solid", name, solids[name].boundary, own.solid) for name, own in known if name in solids]
+    pairs += [("skin", name, skins[name].boundary, own.skin) for name, own in known if name in skins]
+    same = same_boundaries([found for _, _, found, _ in pairs], [wanted for _, _, _, wanted in pairs])
+    for place in np.flatnonzero(~same).tolist():
+        label, name, found, wanted = pairs[place]
+        fault = difference(found, wanted)
+        if fault is not None:
+            yield f"Panel '{name}': its {label} is not what the numbers in the report make: it {fault}."

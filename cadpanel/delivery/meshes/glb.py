@@ -153,7 +153,10 @@ class _Data:
 
 def _read(gltf: GLTF2, blob: bytes, node: Node) -> ReadMesh:
     (primitive,) = gltf.meshes[node.mesh].primitives
-    points = _numbers(gltf, blob, primitive.attributes.POSITION, "<f4").reshape(-1, 3).astype(np.float64)
+    single = _numbers(gltf, blob, primitive.attributes.POSITION, "<f4").reshape(-1, 3)
+    if not np.isfinite(single).all():
+        raise ValueError("a coordinate is no number")
+    points = single.astype(np.float64)
     corners = _numbers(gltf, blob, primitive.indices, "<u4").reshape(-1, 3).astype(np.intp)
     if corners.max(initial=-1) >= len(points):
         raise ValueError("a triangle names a corner that is not there")

@@ -30,6 +30,7 @@ from cadpanel.geometry.vectors import cross, norm, unit
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
+    from matplotlib.colorbar import Colorbar
     from matplotlib.figure import Figure
 
 _WAYS = {
@@ -43,6 +44,8 @@ _SIZE, _DOTS = (10.5, 7.0), 130
 # Widths of lines as a share of the picture's width; how far they are drawn nearer; least light on a face.
 _THICK, _THIN, _NEARER, _DARKEST = 0.006, 0.0015, 0.02, 0.72
 _UPRIGHT, _LONG, _ABOVE = 0.25, 0.3, 0.35
+_KEYS = 4
+"""Names of features in a row of the legend."""
 _LABELS = {
     "deviation": "reference inside (\u2212) or outside (+) of the panel, mm",
     "gap": "gap along the seams, mm",
@@ -211,9 +214,21 @@ def _legend(figure: Figure, axes: Axes, scene: Scene, color: Colour, scale: Scal
 
     if scale is not None:
         bar = figure.colorbar(scale, ax=axes, orientation="horizontal", shrink=0.5, aspect=36, pad=0.02)
+        if color == "radius":
+            _tell_radii(bar, scale)
         bar.set_label(_LABELS[color])
         bar.outline.set_visible(False)
         return
     keys = feature_colours(scene) if color == "feature" else {"all panels are flat": FLAT}
     handles = [Patch(color=colour, label=words) for words, colour in keys.items()]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    axes.legend(
+        handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=min(len(handles), _KEYS), frameon=False
+    )
+
+
+def _tell_radii(bar: Colorbar, scale: ScalarMappable) -> None:
+    """Least, middle and largest, as the page tells them: whoever rolls sheet reads no powers of ten."""
+    least, most = scale.get_clim()
+    told = {f"{value:.0f}": value for value in (least, float(np.sqrt(least * most)), most)}
+    bar.set_ticks(list(told.values()), labels=list(told))
+    bar.ax.minorticks_off()

@@ -68,7 +68,7 @@ def check_report(report: ReportModel, shapes: Sequence[Built], certificate: Cert
     failures += _joint_faults(report, rules)
     failures += seams_left_out(report)
     failures += _summary_faults(report)
-    failures += _certificate_faults(report.certificate, certificate)
+    failures += certificate_faults(report.certificate, certificate)
     return tuple(failures)
 
 
@@ -272,7 +272,8 @@ def _deviation_faults(report: ReportModel, summary: SummaryModel) -> Iterator[st
         yield f"The summary's local_rms_multiple is {multiple:.6g}, the deviations do not make it so."
 
 
-def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
+def certificate_faults(stated: CertificateModel, found: CertificateModel) -> Iterator[str]:
+    """One sentence for everything that a report's certificate says otherwise than the files show now."""
     for key in ("solids", "skins", "valid", "face_kinds", "holes", "names_kept"):
         was, now = getattr(stated, key), getattr(found, key)
         if was != now:
@@ -284,6 +285,7 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
         ("volume_error", 1e-9),
         ("flat_area_error", 1e-9),
         ("flat_length_error", SAME_LENGTH),
+        ("stated_error", 1e-9),
         ("hole_error", SAME_LENGTH),
         ("max_seam_gap", SAME_LENGTH),
     ):
@@ -297,8 +299,11 @@ def _certificate_faults(stated: CertificateModel, found: CertificateModel) -> It
     shared, now = stated.overlap, found.overlap
     if shared is not None and now is not None and not abs(shared - now) <= SAME_VOLUME:
         yield f"The certificate in the report says overlap = {shared:.6g}, the files show {now:.6g}."
-    for output, numbers in found.outputs.items():
-        for key, number in numbers.items():
-            told = stated.outputs.get(output, {}).get(key, np.nan)
-            if not abs(told - number) <= SAME_LENGTH:
-                yield f"The certificate in the report says {output}.{key} = {told:.6g}, the files show {number:.6g}."
+    was_shown, shown = (
+        {f"{output}.{key}": number for output, numbers in one.outputs.items() for key, number in numbers.items()}
+        for one in (stated, found)
+    )
+    for key in sorted({*was_shown, *shown}):
+        was, now = (numbers.get(key, np.nan) for numbers in (was_shown, shown))
+        if not abs(was - now) <= SAME_LENGTH:
+            yield f"The certificate in the report says {key} = {was:.6g}, the files show {now:.6g}."

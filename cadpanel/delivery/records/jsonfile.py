@@ -50,6 +50,15 @@ class Record(BaseModel):
         validate_by_alias=True,
     )
 
+    def __repr__(self) -> str:
+        # Of a whole file the names and counts: nobody reads hundreds of panels at a prompt.
+        if "schema_name" not in type(self).model_fields:
+            return super().__repr__()
+        lists = [(name, value) for name, value in self if isinstance(value, tuple | list) and value]
+        return f"<{type(self).__name__}: {', '.join(f'{len(value)} {name}' for name, value in lists)}>"
+
+    __str__ = __repr__
+
 
 RecordType = TypeVar("RecordType", bound=Record)
 

@@ -13,16 +13,8 @@ from cadpanel.brep.building.sheet import build_panel
 from cadpanel.brep.kernel.shapes import compound_of
 from cadpanel.brep.proof.boundary import SAME_PLACE, difference
 from cadpanel.brep.proof.inspection import boundary_of
-from cadpanel.geometry.shape import PanelShape, PolygonShape
+from tests.boundaries import SHAPES, shuffled
 from tests.drawn import curve
-from tests.instances import random_polygon
-from tests.shapes import folded_panel
-
-SHAPES: dict[str, PanelShape | PolygonShape] = {
-    "folded": folded_panel(),
-    "conical": folded_panel(half_angle=0.2),
-    "polygon": random_polygon(7, 5),
-}
 
 
 def solid(name, thickness=3.0, side="outer"):
@@ -31,21 +23,6 @@ def solid(name, thickness=3.0, side="outer"):
 
 def skin(name):
     return build_panel(SHAPES[name], 3.0).skin
-
-
-def shuffled(own, seed=1):
-    """The same with vertices, edges and faces in another order, and every edge the other way."""
-    random = np.random.default_rng(seed)
-    faces = random.permutation(len(own.surfaces))
-    of = np.append(np.argsort(faces), -1)[own.edge_faces]
-    edges = random.permutation(len(own.edges))
-    return replace(
-        own,
-        vertices=random.permutation(own.vertices),
-        edges=own.edges[edges, ::-1],
-        edge_faces=of[edges],
-        surfaces=own.surfaces[faces],
-    )
 
 
 @pytest.mark.parametrize("name", SHAPES)

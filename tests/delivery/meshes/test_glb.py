@@ -95,7 +95,9 @@ def test_what_is_not_the_reports_is_told(delivery: tuple[Path, ReportModel], tmp
         missing = verify(out).failures
         (out / GLB).write_bytes(glb_bytes(panels, "t", {}))
         painted = verify(out).failures
-        for damage in (b"", b"glTF", data[:700], data[:-4000]):
+        first = data.index(b"BIN\0") + 4
+        no_number = data[:first] + b"\x01\x00\x80\x7f" + data[first + 4 :]
+        for damage in (b"", b"glTF", data[:700], data[:-4000], no_number):
             (out / GLB).write_bytes(damage)
             with pytest.raises(DeliveryError, match=r"panels\.glb' cannot be read: it is no whole glTF file"):
                 verify(out)

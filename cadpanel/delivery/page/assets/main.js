@@ -8,6 +8,7 @@ const features = [...new Set(model.panels.map((panel) => panel.feature))].sort()
 const radii = model.panels.flatMap((panel) => panel.radii.map((pair) => pair[0]));
 const neutral = linearColour(NEUTRAL);
 const dark = linearColour(SEAM);
+const THINNEST = 20; // thousandths of the way along an axis that a section leaves
 
 function bySeams(label, unit, key) {
   const scale = ramp(SEQUENTIAL, 0, roundUp(largest(model.seams, (seam) => Math.max(...seam.profile[key]))));
@@ -77,12 +78,21 @@ const tables = [
 function choose(thing, near = true) {
   if (stage) {
     stage.mark(thing);
-    if (thing && near) stage.approach(thing);
+    if (thing && near) {
+      // What is looked for is never found cut away.
+      if (stage.hides(stage.middleOf(thing))) wholeAgain();
+      stage.approach(thing);
+    }
   }
   for (const table of tables) table.mark(thing);
   if (thing) openTab(thing.profile ? "seams" : "panels");
   document.body.dataset.chosen = thing ? thing.name : "";
   showDetails(get("details"), thing, model, choose);
+}
+
+function wholeAgain() {
+  get("axis").value = "";
+  get("axis").dispatchEvent(new Event("change"));
 }
 
 function showHead() {
@@ -141,14 +151,16 @@ function listen() {
   });
   ends.forEach((end, k) => end.addEventListener("input", () => {
     const range = box[get("axis").value];
-    range[k] = k ? Math.max(Number(end.value), range[0]) : Math.min(Number(end.value), range[1]);
+    // Never so thin that nothing is left to see.
+    range[k] = k ? Math.max(Number(end.value), range[0] + THINNEST) : Math.min(Number(end.value), range[1] - THINNEST);
     end.value = range[k];
     cut();
   }));
   get("ghost").addEventListener("change", () => stage.showGhost(get("ghost").checked));
   const { canvas } = stage;
   let pressed = null;
-  canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+  // The left button, or a finger; the others move the picture, also when they are pressed without a move.
+  canvas.addEventListener("pointerdown", (event) => { pressed = event.button === 0 && event.isPrimary ? [event.clientX, event.clientY] : null; });
   canvas.addEventListener("pointerup", (event) => {
     // A press that moved has turned the picture.
     if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;

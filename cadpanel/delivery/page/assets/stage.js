@@ -255,6 +255,12 @@ class Stage {
     this.draw();
   }
 
+  // Where the middle of a panel or a seam is in the picture.
+  middleOf(thing) {
+    const shift = thing.profile ? this.shiftOfSeam(thing) : this.shiftOf(thing);
+    return new THREE.Vector3(...thing.box.middle.map((value, x) => value - this.model.box.middle[x] + shift[x]));
+  }
+
   // Whether a place is cut away.
   hides(place) {
     return this.sections.some((section) => section.distanceToPoint(place) < 0);

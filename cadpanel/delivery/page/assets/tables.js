@@ -59,9 +59,11 @@ class Table {
   }
 
   find(words) {
+    // Blanks at the ends or about the bar between two panels are nothing that anybody looks for.
+    const plain = (text) => text.trim().toLowerCase().replace(/\s*\|\s*/g, "|");
     let count = 0;
     for (const [thing, row] of this.rows) {
-      row.hidden = !thing.name.toLowerCase().includes(words.toLowerCase());
+      row.hidden = !plain(thing.name).includes(plain(words));
       count += row.hidden ? 0 : 1;
     }
     this.nothing.hidden = count > 0;

@@ -54,6 +54,7 @@ def deliver_loft(loft: Loft, out: str | Path, *, max_warp: float = 1.0, overwrit
 
     Raises:
         DeliveryError: the folder cannot be written.
+        LoftError: the surface turns over, so that its flat pattern would lie upon itself.
         SettingsError: what is given is no loft, or the largest warp no number of degrees.
         ProofError: what is read back is not what was written.
     """

@@ -88,6 +88,11 @@ def loft(
         raise typer.Exit(1)
 
 
+def _short(value: float) -> str:
+    """Two digits, and all of those before the point."""
+    return f"{value:.0f}" if value >= 100.0 else f"{value:.2g}"
+
+
 def print_loft(record: LoftModel, out: Path) -> None:
     """A table of its pieces, its warp, and its flat pattern."""
     from cadpanel.cli.tables import console
@@ -103,14 +108,14 @@ def print_loft(record: LoftModel, out: Path) -> None:
             Text(piece.kind if piece.fan_from is None else f"{piece.kind} fan from {piece.fan_from}"),
             f"{100.0 * a0:.2f} - {100.0 * a1:.2f}",
             f"{100.0 * b0:.2f} - {100.0 * b1:.2f}",
-            f"{piece.max_warp:.2g}",
+            _short(piece.max_warp),
         )
     screen.print(table)
     kept = "within" if record.tolerance_met else "more than"
     lines = [
-        f"Warp {record.max_warp:.2g} degrees at most, {kept} the {record.allowed_warp:g} allowed; rails left by "
-        f"{record.off:.2g} mm at most.",
-        f"Flat pattern: {record.flat.area:.0f} mm2, lengths off by {record.flat.length_error:.2g} mm at most.",
+        f"Warp {_short(record.max_warp)} degrees at most, {kept} the {record.allowed_warp:g} allowed; rails left by "
+        f"{_short(record.off)} mm at most.",
+        f"Flat pattern: {record.flat.area:.0f} mm2, lengths off by {_short(record.flat.length_error)} mm at most.",
         *record.notes,
         f"Written: {out}",
     ]

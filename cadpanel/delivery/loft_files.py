@@ -22,8 +22,9 @@ from cadpanel.delivery.records.loft import LoftModel, LoftProofModel, loft_recor
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.source_date import source_date
 from cadpanel.delivery.study_plot import can_plot
-from cadpanel.errors import DeliveryError, ProofError
+from cadpanel.errors import DeliveryError, LoftError, ProofError
 from cadpanel.geometry.biarcs import arc_chains, arc_contour_area
+from cadpanel.lofting.checks import at
 from cadpanel.lofting.flat import outline
 from cadpanel.lofting.loft import Loft
 
@@ -31,6 +32,8 @@ COLOUR = (0.55, 0.65, 0.75)
 # By how much the kernel's area may differ from ours, as a share; and for each radian of warp, whose integrand has sharp
 # bends where the normal turns over.
 _SAME_AREA, _SAME_WARPED = 1e-6, 1e-4
+# Beyond a right angle, radians, tangent planes at both ends of a ruling look to opposite sides.
+_TURNED_OVER = 0.5 * np.pi
 _NO_PICTURE = "There is no picture, as matplotlib is not installed: pip install 'cadpanel[plot]'."
 
 
@@ -57,6 +60,7 @@ def write_loft_files(
 
     Raises:
         DeliveryError: a file cannot be written.
+        LoftError: the surface turns over, so that its flat pattern would lie upon itself.
         ProofError: what is read back is not what was written.
     """
     how = shop or ShopSettings()
@@ -112,6 +116,17 @@ def flat_rulings(loft: Loft, pitch: float) -> Array:
     return np.concatenate(found)[:-1]
 
 
+def _folded(loft: Loft) -> str:
+    """What is wrong with rails between which the surface turns over, and where."""
+    piece, place = np.unravel_index(int(loft.warps.argmax()), loft.warps.shape)
+    ends = loft.pieces[piece].jets(np.linspace(0.0, 1.0, loft.warps.shape[1])[[place]])
+    return (
+        f"between the rails '{loft.rails[0].name}' and '{loft.rails[1].name}' the surface turns over and would lie "
+        f"upon itself in the plane: at {at(ends[0].point[0])} it is warped by {np.degrees(loft.warps.max()):.0f} "
+        "degrees; draw rails that bend alike, or loft shorter parts of them"
+    )
+
+
 def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> LoftProofModel:
     from ezdxf.filemanagement import readfile
 
@@ -124,6 +139,8 @@ def _proved(loft: Loft, folder: Path, contour: Array, how: ShopSettings) -> Loft
     # A chord's width all along, and what warp takes from the surface.
     allowed = abs(error.area) + how.chord * float(np.linalg.norm(contour[:, :2] - np.roll(contour[:, :2], 1, axis=0)))
     allowed += how.chord * sum(rail.length for rail in loft.rails)
+    if abs(area - error.surface) > allowed and loft.max_warp > _TURNED_OVER:
+        raise LoftError(_folded(loft))
     kept = kept_areas(folder / LOFT_DOCUMENT)
     faults = [
         fault

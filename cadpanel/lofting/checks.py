@@ -38,24 +38,28 @@ def check_rails(a: Rail, b: Rail, size: float) -> None:
     """Refuse rails between which nothing can be spanned.
 
     Raises:
-        LoftError: one closes, is much longer than the other, or they meet.
+        LoftError: one is much longer than the other, one closes, they meet, or lie on one line.
     """
-    for rail in (a, b):
-        ends = rail.at(np.array([0.0, 1.0])).point
-        if norm(ends[1] - ends[0]) <= _APART * size:
-            raise LoftError(f"rail '{rail.name}' closes at {at(ends[0])}: cut both rails there, and loft the parts")
     short, long = sorted((a, b), key=lambda rail: rail.length)
     if long.length > LONGEST * short.length:
         raise LoftError(
             f"rail '{long.name}' is {long.length / short.length:.0f} times as long as '{short.name}' "
-            f"({long.length:.1f} and {short.length:.1f} mm), and {LONGEST:.0f} times is the most: cut it into parts"
+            f"({long.length:.6g} and {short.length:.6g} mm), and {LONGEST:.0f} times is the most: cut it into parts, "
+            "or name other curves"
         )
+    for rail in (a, b):
+        ends = rail.at(np.array([0.0, 1.0])).point
+        if norm(ends[1] - ends[0]) <= _APART * size:
+            raise LoftError(f"rail '{rail.name}' closes at {at(ends[0])}: cut both rails there, and loft the parts")
     least, places = _nearest(a, b)
     if least <= _APART * size:
         where = a.at(places[:1]).point[0]
         raise LoftError(
             f"the rails '{a.name}' and '{b.name}' meet at {at(where)}: trim them there, or loft the parts on both sides"
         )
+    points = np.concatenate([rail.at(np.linspace(0.0, 1.0, _PLACES)).point for rail in (a, b)])
+    if np.linalg.svd(points - points.mean(axis=0), compute_uv=False)[1] <= _APART * size:
+        raise LoftError(f"the rails '{a.name}' and '{b.name}' lie on one line, and span nothing: move one of them")
 
 
 def _nearest(a: Rail, b: Rail) -> tuple[float, Array]:

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from cadpanel.arrays import Array
-from cadpanel.errors import LoftError
 from cadpanel.geometry.vectors import cross, norm
 from cadpanel.kinds import checked
 from cadpanel.lofting.checks import check_rails, cut_at_corners, same_way, size_of
@@ -150,7 +149,8 @@ def loft(
         name: for reports and products.
 
     Raises:
-        LoftError: a rail is none, closes, meets the other one, is 20 times as long, or has a corner of its own.
+        LoftError: a rail is none, stands still, closes, meets the other one, is 20 times as long, or has a corner of
+            its own; both lie on one line.
         SettingsError: there is no such distance.
     """
     how = check_distance(distance)
@@ -165,8 +165,6 @@ def loft(
 def _segment(rails: tuple[Rail, Rail], distance: Distance, size: float) -> Segment:
     shares = np.linspace(0.0, 1.0, PLACES)
     q = squares(*rails, shares, shares, distance)
-    if not np.isfinite(q).all():
-        raise LoftError(f"rail '{rails[0].name}' or '{rails[1].name}' stands still somewhere: draw it again")
     best = best_pairing(q, shares, shares)
     smooth = settled(rails, (shares, shares), best.path)
     pieces = pieces_of(smooth, size)

@@ -1,4 +1,4 @@
-"""The parts of a loft as splines: fans at its ends, and what lies between them."""
+"""The parts of a loft as splines: fans, at its ends or from a place within a rail, and what lies between them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Piece:
 
     Attributes:
         edges: A and B, splines of one degree and with the same knots.
-        apex: 0 or 1 where it is a fan from a point of that rail, else None.
+        apex: 0 or 1 where it is a fan from a point of that rail, its end or not, else None.
         shares: ((2,), (2,)) of both rails at its first and its last ruling.
         off: how far its edges leave the rails at most, mm.
     """
@@ -68,11 +68,22 @@ def pieces_of(smooth: Settled, size: float) -> tuple[Piece, ...]:
     for rail in (0, 1):
         found += _fan(rails, rail, 0.0, first, size)
     if smooth.middles[-1] > smooth.middles[0]:
-        start, stop = smooth.middles[0], smooth.middles[-1]
-        found.append(_piece(rails, lambda u: smooth.shares(start + (stop - start) * u), None, size))
+        found.append(_between(smooth, size))
     for rail in (0, 1):
         found += _fan(rails, rail, 1.0, last, size)
     return tuple(found)
+
+
+def _between(smooth: Settled, size: float) -> Piece:
+    """What lies between the fans; a fan itself where all its rulings come from one place, as opposite of a line."""
+    start, stop = smooth.middles[0], smooth.middles[-1]
+    places = smooth.shares(smooth.middles)
+    for along in (0, 1):
+        still = places[:, 1 - along]
+        if np.ptp(still) <= _LEAST_FAN:
+            first, last = places[[0, -1], along].tolist()
+            return _fan_from(smooth.rails, along, float(still.mean()), (first, last), size)
+    return _piece(smooth.rails, lambda u: smooth.shares(start + (stop - start) * u), None, size)
 
 
 def _fan(rails: tuple[Rail, Rail], along: int, end: float, ruling: Array, size: float) -> list[Piece]:
@@ -80,13 +91,18 @@ def _fan(rails: tuple[Rail, Rail], along: int, end: float, ruling: Array, size: 
     if abs(ruling[along] - end) <= _LEAST_FAN:
         return []
     first, last = sorted((end, float(ruling[along])))
+    return [_fan_from(rails, along, end, (first, last), size)]
+
+
+def _fan_from(rails: tuple[Rail, Rail], along: int, still: float, span: tuple[float, float], size: float) -> Piece:
+    """The fan along a rail over a span of shares, from the place with the share `still` of the other one."""
 
     def shares(u: Array) -> Array:
-        places = np.full((len(u), 2), end)
-        places[:, along] = first + (last - first) * u
+        places = np.full((len(u), 2), still)
+        places[:, along] = span[0] + (span[1] - span[0]) * u
         return places
 
-    return [_piece(rails, shares, 1 - along, size)]
+    return _piece(rails, shares, 1 - along, size)
 
 
 def _piece(rails: tuple[Rail, Rail], shares: Callable[[Array], Array], apex: int | None, size: float) -> Piece:

@@ -21,6 +21,8 @@ _FOLLOWS, _MEETS = 1e-6, 1e-3
 # Gauss nodes between two knots, and the pieces of a span for the table of lengths.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 _PARTS = 8
+# A curve whose speed is less than this part of its largest one stands still.
+_STILL = 1e-9
 _DEGREE = 5
 
 
@@ -108,7 +110,7 @@ class Rail:
         """Measure its length.
 
         Raises:
-            LoftError: it has none, or is not a curve of numbers.
+            LoftError: it has none, stands still somewhere, or is not a curve of numbers.
         """
         lengths, places, starts = [], [], [0]
         for number, stretch in enumerate(self.stretches):
@@ -123,10 +125,26 @@ class Rail:
         along = np.concatenate([[0.0], np.cumsum(np.concatenate(lengths))])
         if not (np.isfinite(along).all() and along[-1] > 0.0):
             raise LoftError(f"rail '{self.name}' has no length: draw it again")
+        self._check_moves()
         object.__setattr__(self, "length", float(along[-1]))
         object.__setattr__(self, "_shares", along / along[-1])
         object.__setattr__(self, "_places", np.concatenate([place[:-1] for place in places] + [places[-1][-1:]]))
         object.__setattr__(self, "_breaks", along[starts] / along[-1])
+
+    def _check_moves(self) -> None:
+        """Refuse what has no tangent somewhere, as a cusp or poles that lie on each other have none."""
+        for stretch in self.stretches:
+            spans = np.unique(stretch.knots)
+            u = np.unique(np.concatenate([np.linspace(*span, _PARTS + 1) for span in pairwise(spans)]))
+            jet = stretch.at(u)
+            speed = norm(jet.first)
+            still = speed <= _STILL * speed.max()
+            if still.any():
+                x, y, z = (np.round(jet.point[still][0], 1) + 0.0).tolist()
+                raise LoftError(
+                    f"rail '{self.name}' stands still at ({x:.1f}, {y:.1f}, {z:.1f}) mm and has no tangent there: "
+                    "draw it again through points that lie apart"
+                )
 
     def at(self, share: Array) -> Jet:
         """Points and derivatives by the share of the length, at (m,) shares between 0 and 1.

@@ -42,6 +42,9 @@ _FAR = 4.0
 _RISING = 1e-9
 # The sum is at rest where it falls by a smaller share.
 _REST = 1e-9
+# Rulings at both ends together that may lie beyond the smooth part; and how near to both ends of the rails, as a share,
+# the nearest one lies where it begins or ends there itself.
+_BEYOND, _AT_ENDS = 16, 0.05
 # A place within this share of a rail's end is that end.
 _END = 1e-9
 
@@ -229,8 +232,8 @@ def _onto_zero(rails: tuple[Rail, Rail], middles: Array, leads: Array) -> Settle
     pace = _FAR * float(middles[1] - middles[0])
     moved, done = _polished(rails, middles, leads, pace)
     # A ruling that ran into the end of a rail lies beyond the smooth part.
-    held = np.flatnonzero(done)
-    if len(held) < 3 or not done[held[0] : held[-1] + 1].all():
+    held = _longest(done)
+    if len(held) < 3 or len(held) < len(done) - _BEYOND:
         return None
     inner = slice(held[0], held[-1] + 1)
     start = _border(rails, middles[inner][:2], moved[inner][:2], ending=False)
@@ -246,6 +249,12 @@ def _onto_zero(rails: tuple[Rail, Rail], middles: Array, leads: Array) -> Settle
     if not done[1:-1].all() or not _allowed(stations, found):
         return None
     return Settled(rails, stations, found, True, _slivers(stations, found))
+
+
+def _longest(done: BoolArray) -> IntArray:
+    """(k,) the longest stretch of places that are done."""
+    runs = np.split(np.arange(len(done)), np.flatnonzero(np.diff(done)) + 1)
+    return max((run for run in runs if done[run[0]]), key=len, default=np.empty(0, dtype=np.intp))
 
 
 def _slivers(middles: Array, leads: Array) -> Array:
@@ -265,9 +274,10 @@ def _border(rails: tuple[Rail, Rail], middles: Array, leads: Array, *, ending: b
         ending: whether it is the last one.
     """
     end = 1.0 if ending else 0.0
-    if abs(_sine(rails, np.array([end]), np.zeros(1)).angle[0]) <= EXACT:
-        return end, 0.0
     near, next_ = (np.array([c + d, c - d]) for c, d in zip(middles.tolist(), leads.tolist(), strict=True))
+    # Opposite of a line that begins along the other rail, any place of it will do: a fan that is there stays.
+    if abs(_sine(rails, np.array([end]), np.zeros(1)).angle[0]) <= EXACT and np.abs(near - end).max() <= _AT_ENDS:
+        return end, 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         ahead = (end - near) / (near - next_)
     ahead = np.where(np.isfinite(ahead) & (ahead >= -_END), ahead, np.inf)

@@ -7,7 +7,7 @@ enough is taken. (The paper's [9] marches so over a surface with ruled strips; h
 and panels the features that are asked for.)
 
 Panels that have to meet are farther off than each alone. Where they then miss the bound or a limit, the march is done
-again with a tighter bound for panels alone.
+again with a tighter bound for panels alone; and where that was much tighter than it need be, with one in between.
 """
 
 from __future__ import annotations
@@ -35,6 +35,10 @@ _NEAR, _KNOWN = 0.03, 0.01
 _TRIES, _ROUNDS, _FIRST = 12, 5, 0.2
 # What is tried is this far inside of what is known to be too wide, and of a bound that was missed together.
 _INSIDE, _TIGHTER = 0.95, 0.9
+# Where it is not the deviation that is missed, or panels cannot be fitted together at all, the next bound is this part.
+_MUCH_TIGHTER = 0.5
+# Between a bound that held and one so many times as wide that did not, another is tried.
+_WORTH = 1.25
 # No panel is narrower than this share of the strip.
 _LEAST = 1e-3
 
@@ -92,8 +96,8 @@ def widest_strips(
 
     Raises:
         ReferenceFileError: the reference cannot be cut along a strip.
-        PanelError: a panel that was near enough alone could not be fitted with the others.
-        SettingsError: no largest deviation is given, there is more than one strip, or no panel however narrow will do.
+        SettingsError: no largest deviation is given, there is more than one strip, no panel however narrow will do, or
+            panels as wide as that cannot be fitted together.
     """
     if settings.max_deviation is None:
         raise SettingsError("strips are as wide as a largest deviation allows: give one, too")
@@ -101,22 +105,22 @@ def widest_strips(
         raise SettingsError("strips are as wide as what is held allows, and weights hold nothing: leave them out")
     march = _March(read, settings, progress)
     until = math.inf if time_limit is None else time.perf_counter() + time_limit
-    bound, best = settings.max_deviation, None
+    bounds = _Bounds(settings.max_deviation)
     for _ in range(_ROUNDS):
+        bound = bounds.next
         try:
             stations = march.to_the_end(bound)
+            reference = read(stations)
+            result = fit(reference, prepare(settings, reference), time_limit=_left(until))
         except _EndedError:
             break
-        reference = read(stations)
-        result = fit(reference, prepare(settings, reference), time_limit=_left(until))
-        found = Widest(result=result, stations=stations, length=march.length, bound=bound)
-        if best is None or _off(result) < _off(best.result):
-            best = found
-        if result.tolerance_met or time.perf_counter() > until:
+        except PanelError as error:
+            bounds.refuse(error, march.farthest)
+        else:
+            bounds.tell(Widest(result=result, stations=stations, length=march.length, bound=bound))
+        if bounds.settled or time.perf_counter() > until:
             break
-        bound *= min(_TIGHTER, settings.max_deviation / _off(result))
-    if best is None:
-        raise CadpanelError("the search for strips was ended before the first seams were found: nothing was made")
+    best = bounds.found()
     noted = replace(best.result.reference, notes=(*best.result.reference.notes, best.note()))
     told = replace(best.result, reference=noted, baselines=best.result.baselines.told_of(noted))
     return replace(best, result=told)
@@ -135,6 +139,63 @@ def _off(result: FitResult) -> float:
     return float(result.measures.max_deviation.max())
 
 
+class _Bounds:
+    """The bounds for panels alone that were tried, and which one is next.
+
+    Attributes:
+        next: the bound to be tried, mm.
+    """
+
+    def __init__(self, allowed: float) -> None:
+        self.next = self._allowed = allowed
+        self._held: Widest | None = None
+        self._nearest: Widest | None = None
+        self._missed = math.inf
+        self._refused: PanelError | None = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether a wider bound than one that held is not worth trying."""
+        return self._held is not None and not _WORTH * self._held.bound < self._missed < math.inf
+
+    def refuse(self, error: PanelError, farthest: float) -> None:
+        """Learn that panels that were `farthest` mm off alone could not be fitted together at all."""
+        self._refused, self._missed = error, min(self.next, farthest)
+        self._choose(_MUCH_TIGHTER)
+
+    def tell(self, found: Widest) -> None:
+        """Learn what came of the bound."""
+        if found.result.tolerance_met:
+            self._held = found
+        else:
+            self._missed = found.bound
+            if self._nearest is None or _off(found.result) < _off(self._nearest.result):
+                self._nearest = found
+        share = self._allowed / max(_off(found.result), 1e-9)
+        self._choose(min(_TIGHTER, share) if share < 1.0 else _MUCH_TIGHTER)
+
+    def _choose(self, tighter: float) -> None:
+        """Between what held and what did not; where nothing held yet, by this share tighter than what did not."""
+        self.next = tighter * self._missed if self._held is None else math.sqrt(self._held.bound * self._missed)
+
+    def found(self) -> Widest:
+        """The widest panels that held, or those that came nearest to it.
+
+        Raises:
+            SettingsError: panels so wide cannot be fitted together.
+            CadpanelError: nothing was made.
+        """
+        best = self._held or self._nearest
+        if best is not None:
+            return best
+        if self._refused is not None:
+            raise SettingsError(
+                f"panels as wide as {self._allowed:.6g} mm of deviation allow cannot be fitted together, nor can those "
+                f"within {self._missed:.3g} mm: allow less ({self._refused})"
+            )
+        raise CadpanelError("the search for strips was ended before the first seams were found: nothing was made")
+
+
 class _EndedError(Exception):
     """Somebody wants the march to end."""
 
@@ -144,11 +205,13 @@ class _March:
 
     Attributes:
         length: of the strip, mm.
+        farthest: the largest deviation that any panel of the last march has alone, mm.
     """
 
     def __init__(self, read: Callable[[Cuts], Reference], settings: FitSettings, progress: Progress | None) -> None:
         self._read, self._alone, self._progress = read, settings.alone(), progress
         self._whole = read(())
+        self.farthest = 0.0
         if len(self._whole.panels) != 1:
             raise SettingsError(
                 f"strips are found along one strip, and '{self._whole.source}' has {len(self._whole.panels)} surfaces: "
@@ -160,6 +223,7 @@ class _March:
     def to_the_end(self, bound: float) -> Cuts:
         """The seams of panels that are each as wide as the bound, mm, allows."""
         seams: list[float] = []
+        self.farthest = 0.0
         guess = _FIRST * self.length
         while True:
             start = seams[-1] if seams else 0.0
@@ -178,15 +242,15 @@ class _March:
     def _widest(self, start: float, guess: float, bound: float) -> float | None:
         """The largest width from a seam on, as far as that is known; None where all that is left will do."""
         rest = self.length - start
-        low, high, width = 0.0, math.inf, guess
+        low, high, width, reached = 0.0, math.inf, guess, 0.0
         for _ in range(_TRIES):
             whole = width > _INSIDE * rest
             width = rest if whole else width
             far = self._far(start, None if whole else start + width)
             if far <= bound:
+                low, reached = width, far
                 if whole:
-                    return None
-                low = width
+                    break
             else:
                 high = width
             known = high < math.inf and high - low <= _KNOWN * high
@@ -203,7 +267,8 @@ class _March:
                 f"no panel at {start:.0f} mm along the strip, however short, stays within {bound:.3g} mm: allow more, "
                 "or choose another feature"
             ) from self._refused
-        return low
+        self.farthest = max(self.farthest, reached)
+        return None if low >= rest else low
 
     def _far(self, start: float, stop: float | None) -> float:
         """The largest deviation of the panel between two places, fitted alone, mm; infinite where there is none."""

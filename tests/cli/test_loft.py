@@ -14,7 +14,7 @@ from cadpanel.brep.proof.loft_facts import loft_facts
 from cadpanel.delivery import loft_files
 from cadpanel.delivery.pictures.loft import draw_loft
 from cadpanel.delivery.records.loft import read_loft
-from cadpanel.errors import ProofError
+from cadpanel.errors import LoftError, ProofError
 from tests.known_rails import CONE, CYLINDER, TWISTED, curve, rails
 
 
@@ -84,10 +84,17 @@ def test_the_program_s_rails_are_those_of_the_file(file):
     assert one.length > other.length > 500.0
 
 
-def test_rails_that_no_surface_fits_are_delivered_all_the_same_with_their_warp(tmp_path):
+def test_rails_that_no_surface_fits_are_delivered_all_the_same_with_their_warp(tmp_path, monkeypatch):
     random = np.random.default_rng(8)
     along = np.linspace(0.0, 1000.0, 6)[:, None]
     low, high = (np.concatenate([along, random.normal(0.0, 60.0, (6, 2)) + up], axis=1) for up in (0.0, 500.0))
-    record = cp.deliver_loft(cp.loft(low, high), tmp_path / "wild")
+    surface = cp.loft(low, high)
+    record = cp.deliver_loft(surface, tmp_path / "wild")
     assert record.max_warp > 5.0
     assert record.proof.area == pytest.approx(record.flat.area, rel=1e-4)
+    # As if it were warped by more than a right angle, and its flat pattern lay upon itself.
+    monkeypatch.setattr(loft_files, "_TURNED_OVER", 0.0)
+    monkeypatch.setattr(loft_files, "arc_contour_area", lambda _: 0.5 * record.flat.area)
+    with pytest.raises(LoftError, match=r"turns over .* at \(.*\) mm it is warped by \d+ degrees; draw rails"):
+        cp.deliver_loft(surface, tmp_path / "folded")
+    assert not (tmp_path / "folded").exists()

@@ -93,6 +93,59 @@ def test_hoschek_s_distance_finds_the_same_developable_surface():
     assert other.flat[1].surface == pytest.approx(spanned("torse").flat[1].surface, rel=1e-9)
 
 
+def test_opposite_of_a_line_a_triangle_lies_between_two_cones():
+    """A quarter of a circle under a line: the tangent is parallel to it at one place, where all its rulings meet."""
+    turn = np.linspace(0.0, 0.5 * np.pi, 41)
+    arc = np.stack([500.0 * np.cos(turn), 500.0 * np.sin(turn), 0.0 * turn], axis=-1)
+    line = np.array([[500.0, 0.0, 300.0], [0.0, 500.0, 300.0]])
+    for surface, apexes in ((loft(arc, line), [1, 0, 1]), (loft(line, arc), [0, 1, 0])):
+        assert [piece.apex for piece in surface.pieces] == apexes
+        assert isinstance(surface.kinds[1], Flat)
+        assert surface.exact
+        assert surface.max_warp < WARP
+        assert surface.pieces[1].shares[0, apexes[0] ^ 1] == pytest.approx(0.5, abs=1e-6)
+
+
+def test_a_quarter_of_a_rounded_rectangle_and_of_a_circle_are_spanned_by_triangles_and_a_cone():
+    """The lines begin and end along the circle's tangents there, so that the rulings between the ends have no warp."""
+
+    def arc(x, y, radius, z):
+        w, (u, v) = 0.5**0.5, (x + radius, y + radius)
+        poles = np.array([[u, y, z, 1.0], [w * u, w * v, w * z, w], [x, v, z, 1.0]])
+        return Stretch(2, np.repeat([0.0, 1.0], 3), poles)
+
+    lines = [
+        stretch_through(np.array(ends)) for ends in ([[400.0, 0, 0], [400, 200, 0]], [[300, 300, 0], [0, 300, 0.0]])
+    ]
+    low = chained("low", [lines[0], arc(300.0, 200.0, 100.0, 0.0), lines[1]])
+    surface = loft(chained("high", [arc(0.0, 0.0, 300.0, 300.0)]), low)
+    assert [piece.apex for piece in surface.pieces] == [0, None, 0]
+    assert surface.pieces[0].shares[1, 1] == pytest.approx(200.0 / low.length, abs=1e-6)
+    assert surface.exact
+    assert surface.max_warp < WARP
+
+
+CUSP = BSpline(np.repeat([0.0, 1.0], 4), np.array([[0.0, 0, 0], [900, 400, 0], [0, 400, 0], [900, 0, 0]]), 3)
+AXIS = np.array([[0.0, 0.0, 0.0], [900.0, 0.0, 0.0]])
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "said"),
+    [
+        (CUSP, AXIS + np.array([0.0, 0.0, 500.0]), r"stands still at \(450\.0, 300\.0, 0\.0\) mm"),
+        (AXIS, AXIS + np.array([2000.0, 0.0, 0.0]), "lie on one line, and span nothing"),
+        (
+            AXIS,
+            1e-7 * AXIS + np.array([0.0, 9.0, 0.0]),
+            "10000000 times as long .*: cut it into parts, or name",
+        ),
+    ],
+)
+def test_rails_that_span_nothing_are_refused_with_what_helps(a, b, said):
+    with pytest.raises(LoftError, match=said):
+        loft(a, b)
+
+
 def test_lines_and_arcs_that_meet_smoothly_become_planes_and_cones():
     """A bend between two flanges, narrowing towards an apex over the middle of its arc."""
     weight, apex = np.cos(np.pi / 6.0), np.array([100.0, -50.0 * np.sqrt(3.0), 900.0])

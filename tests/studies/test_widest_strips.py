@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from cadpanel.errors import SettingsError
+from cadpanel.errors import PanelError, SettingsError
+from cadpanel.fitting.result import FitResult
+from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import FaceSamples, RawPanel, Reference
-from cadpanel.studies.widest_strips import Cuts, Widest, widest_strips
+from cadpanel.studies import widest_strips as module
+from cadpanel.studies.widest_strips import Cuts, Widest, _off, widest_strips
 
 # Of the barrels, mm: along the strip, and across.
 LENGTH, WIDTH = 9000.0, 1500.0
@@ -108,3 +112,37 @@ def test_without_a_deviation_or_with_two_strips_there_is_nothing_to_look_for() -
     both = Barrel(1e4, 1e4)((4000.0,))
     with pytest.raises(SettingsError, match="2 surfaces"):
         widest_strips(lambda _: both, FLAT)
+
+
+def test_a_bound_much_tighter_than_it_need_be_is_widened_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fewer than seven panels miss, and by so much that the next bound leaps far below the one that would hold."""
+
+    def missing(reference: Reference, settings: FitSettings, *, time_limit: float | None = None) -> FitResult:
+        if 1 < len(reference.panels) < 7:
+            settings = replace(settings, max_deviation=0.04)
+        return fit(reference, settings, time_limit=time_limit)
+
+    monkeypatch.setattr(module, "fit", missing)
+    times = {0.04: 25.0}
+    monkeypatch.setattr(module, "_off", lambda result: _off(result) * times.get(result.settings.max_deviation, 1.0))
+    strips, _ = found(5_000.0, 5_000.0, replace(FLAT, max_deviation=60.0))
+    assert strips.result.tolerance_met
+    assert 7 <= len(strips.widths) <= 9
+
+
+def test_panels_too_wide_to_be_fitted_together_are_made_narrower_or_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    fewest = 4
+
+    def refusing(reference: Reference, settings: FitSettings, *, time_limit: float | None = None) -> FitResult:
+        if 1 < len(reference.panels) < fewest:
+            raise PanelError("B-01", "no plane comes near it")
+        return fit(reference, settings, time_limit=time_limit)
+
+    monkeypatch.setattr(module, "fit", refusing)
+    strips, _ = found(5_000.0, 5_000.0, replace(FLAT, max_deviation=1e6))
+    assert strips.result.tolerance_met
+    assert len(strips.widths) >= fewest
+    fewest = 1000
+    monkeypatch.setattr(module, "_ROUNDS", 1)
+    with pytest.raises(SettingsError, match=r"allow less \(Panel 'B-01'"):
+        found(5_000.0, 5_000.0, replace(FLAT, max_deviation=1e6))

@@ -127,6 +127,10 @@ def chosen_rails(found: FileCurves, names: Sequence[str]) -> tuple[Rail, Rail]:
     Raises:
         LoftError: there is no such curve, or not two of them.
     """
+    if len(found.curves) < 2:
+        raise LoftError(
+            f"'{found.source}' holds one curve, and a loft has two rails: export the other one into the same file, too"
+        )
     if not names:
         if len(found.curves) != 2:
             raise LoftError(
@@ -139,7 +143,10 @@ def chosen_rails(found: FileCurves, names: Sequence[str]) -> tuple[Rail, Rail]:
     one, other = (_chosen(found, name) for name in names)
     common = {curve.number for curve in one} & {curve.number for curve in other}
     if common:
-        raise LoftError(f"curve {min(common)} of '{found.source}' cannot be both rails: name two")
+        raise LoftError(
+            f"curve {min(common)} of '{found.source}' cannot be both rails: name two, by number if their names are the "
+            "same"
+        )
     return _rail(names[0], one), _rail(names[1], other)
 
 

@@ -203,7 +203,7 @@ def _require_square(seams: Seams, what: str) -> None:
 def _require_parts(count: int, what: str) -> None:
     if count == 1:
         raise ReferenceFileError(
-            f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into 2 or more."
+            f"T{what[1:]} closes to a ring, and a panel cannot go round: divide it into a number of panels, 2 or more."
         )
 
 

@@ -1,5 +1,7 @@
 """Curves of a file become rails, exactly, by number, name or layer."""
 
+from dataclasses import replace
+
 import cadquery as cq
 import numpy as np
 import pytest
@@ -53,3 +55,9 @@ def test_rails_are_named_by_number_name_or_layer():
 def test_what_is_not_there_is_refused(names, said):
     with pytest.raises(LoftError, match=said):
         chosen_rails(FOUND, names)
+
+
+def test_one_curve_alone_is_no_loft_however_it_is_named():
+    for names in ([], ["1", "2"]):
+        with pytest.raises(LoftError, match=r"holds one curve, .*: export the other one"):
+            chosen_rails(replace(FOUND, curves=FOUND.curves[:1]), names)

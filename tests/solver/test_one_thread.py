@@ -6,7 +6,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from cadpanel.arrays import Array
 from cadpanel.solver.levenberg_marquardt import Stopping, levenberg_marquardt
 from cadpanel.solver.one_thread import on_one_thread
-from tests.solver.test_levenberg_marquardt import side_by_side
+from tests.solver.models import Separate, pattern
 
 
 def threads() -> set[int]:
@@ -44,5 +44,5 @@ def test_the_solvers_keep_to_it() -> None:
 
     start = np.zeros((1, 2))
     with threadpool_limits(2, user_api="blas"):
-        levenberg_marquardt(side_by_side(residual, lambda _: np.eye(2), start), start, Stopping())
+        levenberg_marquardt(Separate(residual, lambda _: np.eye(2), pattern(1, 2, []), np.ones(1)), start, Stopping())
     assert seen == {1}

@@ -28,7 +28,7 @@ DELIVERING = {
     "verify": "Read back and verify",
 }
 """What the steps of a delivery are called."""
-_ALIKE = {DELIVERING["build"]}
+_ALIKE = {DELIVERING["build"], DELIVERING["verify"]}
 """Steps whose parts take about as long as each other, panels and not files: what is left of them can be told."""
 
 

@@ -53,7 +53,7 @@ def verify(
         from cadpanel.cli.tables import console, print_certificate
         from cadpanel.delivery.verify import verify as verify_delivery
 
-        found = verify_delivery(folder, reference)
+        found = verify_delivery(folder, reference, progress=shown.count)
     if not quiet:
         print_certificate(found.certificate, str(folder))
         if not found.report.summary.tolerance_met:

@@ -124,7 +124,7 @@ def fill_delivery(
         _write(folder, delivery, first, _part(tell, 0, len(outputs)), helper)
         written_at = time.perf_counter()
         tell("verify", 0, 1)
-        proved = prove(folder, delivery, first, helper, built_already(delivery.panels, delivery.shapes))
+        proved = prove(folder, delivery, first, helper, built_already(delivery.panels, delivery.shapes), tell)
         if not proved.certificate.failures:
             delivery = replace(delivery, seams=proved.seams)
             _write(folder, delivery, last, _part(tell, len(first), len(outputs)), helper)

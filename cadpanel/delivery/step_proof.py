@@ -14,7 +14,7 @@ from cadpanel.brep.proof.clearances import Clear
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
-from cadpanel.brep.proof.parallel import Helper
+from cadpanel.brep.proof.parallel import Helper, Told, unheard
 from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.step.frame_checks import Part, frame_faults
 from cadpanel.delivery.contents import Contents
@@ -45,7 +45,11 @@ class Proved:
 
 
 def prove_steps(
-    folder: Path, contents: Contents, helper: Helper | None = None, built: Mapping[str, Rebuilt] | None = None
+    folder: Path,
+    contents: Contents,
+    helper: Helper | None = None,
+    built: Mapping[str, Rebuilt] | None = None,
+    told: Told = unheard,
 ) -> Proved:
     """What panels.step and skins.step in a folder show; seams are seen where both panels are in the files.
 
@@ -54,6 +58,7 @@ def prove_steps(
         contents: what they must tell of.
         helper: a second interpreter that is running already.
         built: by name, what bounds panels that were built from the same numbers already; others are built anew.
+        told: how many solids, skins and sheets more were inspected or built.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
@@ -91,7 +96,8 @@ def prove_steps(
     ]
     there = [place for place, seam in enumerate(contents.seams) if set(seam.panels) <= set(moved)]
     wanted = [_expected_seam(contents.seams[place], moved) for place in there]
-    certificate = certify(folder / PANELS, folder / SKINS, expected, wanted, helper, contents.joint, built or {})
+    files = folder / PANELS, folder / SKINS
+    certificate = certify(*files, expected, wanted, helper, contents.joint, built or {}, told)
     found = dict(zip(there, certificate.clear, strict=True)) if certificate.clear else {}
     record = _record(certificate)
     record = record.model_copy(update={"failures": (*record.failures, *_frame_faults(folder, contents))})

@@ -15,6 +15,7 @@ from cadpanel.delivery.manifest import MANIFEST, changed_files, unlisted_files
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Output
 from cadpanel.delivery.own_files import REPORT
+from cadpanel.delivery.parts_done import PartsDone
 from cadpanel.delivery.records.certified import CertificateModel
 from cadpanel.delivery.records.consistency import check_report
 from cadpanel.delivery.records.flat_parts import flat_parts
@@ -23,6 +24,7 @@ from cadpanel.delivery.records.part_checks import part_faults
 from cadpanel.delivery.records.report import ReportModel, read_report
 from cadpanel.delivery.records.to_shape import Built, recorded_shapes
 from cadpanel.delivery.return_checks import return_faults
+from cadpanel.delivery.sheets import Progress, say_nothing
 from cadpanel.delivery.step_proof import Proved, prove_steps
 from cadpanel.delivery.unproved import BY_A_FIT, BY_REFERENCE, IN_NO_FILE, words
 from cadpanel.errors import DeliveryError, SettingsError
@@ -57,13 +59,16 @@ class Verification:
 
 
 @checked
-def verify(folder: str | Path, reference: str | Path | None = None) -> Verification:
+def verify(
+    folder: str | Path, reference: str | Path | None = None, *, progress: Progress | None = None
+) -> Verification:
     """Read a delivery's files and hold them against its report, and the report against itself.
 
     Args:
         folder: that `deliver` wrote.
         reference: the file that the panels approximate, to measure deviation, drift and turn of seams again; without
             it they are listed as not proved.
+        progress: told the step, "verify", and how much of it is done of how much.
 
     Raises:
         DeliveryError: the folder or one of its files is missing or cannot be read; one sentence says which.
@@ -80,7 +85,7 @@ def verify(folder: str | Path, reference: str | Path | None = None) -> Verificat
     except SettingsError as error:
         raise DeliveryError(f"'{place / REPORT}' holds a setting that is none ({error}): write it again.") from error
     _demand_files(place, [file for output in outputs for file in (*output.files, *output.folders)])
-    certificate = prove(place, contents, outputs).certificate
+    certificate = prove(place, contents, outputs, progress=progress).certificate
     failures = (
         *_changed(place),
         *_unlisted(place, outputs),
@@ -147,6 +152,7 @@ def prove(
     outputs: Sequence[Output],
     helper: Helper | None = None,
     built: Mapping[str, Rebuilt] | None = None,
+    progress: Progress | None = None,
 ) -> Proved:
     """What reading the files in a folder back shows.
 
@@ -156,12 +162,20 @@ def prove(
         outputs: those that were written.
         helper: a second interpreter that is running already.
         built: by name, what bounds panels that were built from the same numbers already; others are built anew.
+        progress: told how much is done.
 
     Raises:
         DeliveryError: one of the files cannot be read at all.
     """
-    found = _prove_each(folder, contents, outputs)
-    proved = prove_steps(folder, contents, helper, built)
+    count = len(contents.records)
+    others = [output for output in outputs if not output.always]
+    # Of every panel the solid and the skin, the sheet that is built anew, and what each other output says of it.
+    done = PartsDone(progress or say_nothing, "verify", (3 + len(others)) * count - len(built or ()))
+    found: dict[str, Proof] = {}
+    for output in others:
+        found |= _prove_each(folder, contents, (output,))
+        done(count)
+    proved = prove_steps(folder, contents, helper, built, done)
     failures = (
         *proved.certificate.failures,
         *part_faults(contents.records, contents.parts, contents.shop.density),

@@ -143,6 +143,18 @@ def test_the_steps_are_told_in_their_order(tmp_path: Path) -> None:
     assert all(done <= of for _, done, of in told)
 
 
+def test_proving_tells_how_many_solids_skins_sheets_and_outputs_are_looked_at(tmp_path: Path) -> None:
+    told: list[tuple[str, int, int]] = []
+    deliver(fitted(), tmp_path / "out", shop=ShopSettings(outputs=("step", "flats")))
+    verify(tmp_path / "out", progress=lambda *step: told.append(step))
+    assert {step for step, _, _ in told} == {"verify"}
+    counts = [done for _, done, _ in told]
+    assert counts == sorted(counts)
+    parts = len(fitted().shapes) * (1 + 1 + 1 + 1)  # a flat pattern, a solid, a skin, a sheet that is built anew
+    assert told[-1] == ("verify", parts, parts)
+    assert len(told) > 2
+
+
 def test_an_existing_folder_is_refused_unless_it_may_be_replaced(tmp_path: Path) -> None:
     deliver(fitted(), tmp_path / "out")
     with pytest.raises(DeliveryError, match="exists already"):

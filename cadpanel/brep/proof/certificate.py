@@ -21,7 +21,7 @@ from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam
 from cadpanel.brep.proof.flat_checks import FlatFacts, check_flats
 from cadpanel.brep.proof.hole_checks import check_holes
 from cadpanel.brep.proof.overlaps import unparted
-from cadpanel.brep.proof.parallel import Helper, common_volumes, inspect_files, rebuild
+from cadpanel.brep.proof.parallel import Helper, Told, common_volumes, inspect_files, rebuild, unheard
 from cadpanel.brep.proof.rebuilt import Rebuilt, unlike_rebuilt
 from cadpanel.brep.proof.seam_gaps import seam_gaps
 from cadpanel.brep.proof.shape_facts import FACE_KINDS, ShapeFacts
@@ -99,6 +99,7 @@ def certify(
     helper: Helper | None = None,
     joint: float | None = None,
     built: Mapping[str, Rebuilt] = MappingProxyType({}),
+    told: Told = unheard,
 ) -> Certificate:
     """Read both files and prove them against the expected numbers.
 
@@ -111,11 +112,12 @@ def certify(
         joint: the width of the joint that was asked for, mm; None where none was promised, not even that sheets touch.
         built: by name, what bounds panels that were built from the numbers of their sheets already; others are built
             anew where there are numbers.
+        told: how many solids, skins and sheets more were inspected or built.
 
     Raises:
         DeliveryError: if a file cannot be read at all.
     """
-    solids, skins = inspect_files(panels_step, skins_step, helper)
+    solids, skins = inspect_files(panels_step, skins_step, helper, told)
     failures: list[str] = []
     names_kept = _names_kept("solids", solids, panels, failures) & _names_kept("skins", skins, panels, failures)
     solid_of, skin_of = ({facts.name: facts for facts in found} for found in (solids, skins))
@@ -143,7 +145,7 @@ def certify(
                 read = solid_of[panel.name], skin_of[panel.name]
                 flats.append(FlatFacts(panel.flat, panel.far_planes, *read, panel.holes))
     sheets = {panel.name: panel.sheet for panel in panels if panel.sheet is not None and panel.name not in built}
-    anew = rebuild(panels_step, [*sheets.values()], helper)
+    anew = rebuild(panels_step, [*sheets.values()], helper, told)
     failures += unlike_rebuilt([*built, *sheets], [*built.values(), *anew], solid_of, skin_of)
     flat_errors = check_flats(flats, failures)
     gaps = seam_gaps(panels, skin_of, seams, failures)

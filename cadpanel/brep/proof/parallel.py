@@ -11,7 +11,7 @@ import os
 import queue
 import threading
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,6 +36,12 @@ AHEAD = 2
 WRITE_AGAIN = "it is damaged; write the delivery again"
 
 Chunk = tuple[list[int], object]
+Told = Callable[[int], None]
+"""Told how many shapes more were looked at, by whichever thread waited for them."""
+
+
+def unheard(_: int) -> None:
+    """Nobody listens."""
 
 
 class _File:
@@ -87,16 +93,23 @@ class _File:
         """Facts of the shapes that it keeps as text."""
         return cast(dict[str, KeptFacts], self.ask("kept", reads=True))
 
-    def rebuilt(self, sheets: Sequence[Sheet]) -> list[Rebuilt | PanelError]:
+    def rebuilt(self, sheets: Sequence[Sheet], told: Told) -> list[Rebuilt | PanelError]:
         """What the kernel makes of sheets, some at a time, so that none has to wait for an answer for long."""
         found: list[Rebuilt | PanelError] = []
         for first in range(0, len(sheets), CHUNK):
-            found += cast(list[Rebuilt | PanelError], self.ask("rebuild", sheets[first : first + CHUNK]))
+            made = cast(list[Rebuilt | PanelError], self.ask("rebuild", sheets[first : first + CHUNK]))
+            told(len(made))
+            found += made
         return found
 
-    def all_facts(self) -> list[ShapeFacts]:
+    def all_facts(self, told: Told = unheard) -> list[ShapeFacts]:
         """Read it and inspect all of it."""
-        found = self.facts(range(self.open()))
+        found: list[ShapeFacts] = []
+        count = self.open()
+        for first in range(0, count, CHUNK):
+            some = self.facts(range(first, min(first + CHUNK, count)))
+            told(len(some))
+            found += some
         self.ask("close")
         return found
 
@@ -119,9 +132,9 @@ class Helper:
         """Let it take chunks of panels from `work` after that, until none comes any more."""
         return self._clerk.submit(work.help, _File(self._interpreter, panels))
 
-    def rebuild(self, panels: Path, sheets: Sequence[Sheet]) -> Future[list[Rebuilt | PanelError]]:
+    def rebuild(self, panels: Path, sheets: Sequence[Sheet], told: Told) -> Future[list[Rebuilt | PanelError]]:
         """Let it build sheets of the file of panels anew."""
-        return self._clerk.submit(_File(self._interpreter, panels).rebuilt, sheets)
+        return self._clerk.submit(_File(self._interpreter, panels).rebuilt, sheets, told)
 
     def end(self) -> None:
         """End it at once."""
@@ -147,7 +160,10 @@ def second_interpreter(panels: int) -> Iterator[Helper | None]:
 
 
 def inspect_files(
-    panels_step: str | os.PathLike[str], skins_step: str | os.PathLike[str], helper: Helper | None = None
+    panels_step: str | os.PathLike[str],
+    skins_step: str | os.PathLike[str],
+    helper: Helper | None = None,
+    told: Told = unheard,
 ) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
     """Facts of every shape in either file.
 
@@ -155,18 +171,19 @@ def inspect_files(
         panels_step: the file of solids.
         skins_step: the file of open shells.
         helper: that is running already; None to start one if it pays.
+        told: how many shapes more were inspected.
 
     Raises:
         DeliveryError: if a file cannot be read, or the kernel crashes over it or does not end.
     """
     panels, skins = Path(panels_step), Path(skins_step)
     if helper is not None:
-        return _inspect_together(panels, skins, helper)
+        return _inspect_together(panels, skins, helper, told)
     worthwhile = skins.is_file() and skins.stat().st_size >= WORTHWHILE_BYTES
     with second_interpreter(WORTHWHILE_PANELS if worthwhile else 0) as started:
         if started is None:
-            return _File(READER, panels).all_facts(), _File(READER, skins).all_facts()
-        return _inspect_together(panels, skins, started)
+            return _File(READER, panels).all_facts(told), _File(READER, skins).all_facts(told)
+        return _inspect_together(panels, skins, started, told)
 
 
 def inspect_archive(path: Path) -> dict[str, KeptFacts]:
@@ -179,7 +196,7 @@ def inspect_archive(path: Path) -> dict[str, KeptFacts]:
 
 
 def rebuild(
-    panels_step: str | os.PathLike[str], sheets: Sequence[Sheet], helper: Helper | None = None
+    panels_step: str | os.PathLike[str], sheets: Sequence[Sheet], helper: Helper | None = None, told: Told = unheard
 ) -> list[Rebuilt | PanelError]:
     """The sheets of a file of panels, built anew; half of them by a helper, if there is one.
 
@@ -188,10 +205,10 @@ def rebuild(
     """
     file, path = _File(READER, Path(panels_step)), Path(panels_step)
     if helper is None or len(sheets) < CHUNK:
-        return file.rebuilt(sheets)
+        return file.rebuilt(sheets, told)
     half = len(sheets) // 2
-    others = helper.rebuild(path, sheets[half:])
-    return [*file.rebuilt(sheets[:half]), *others.result()]
+    others = helper.rebuild(path, sheets[half:], told)
+    return [*file.rebuilt(sheets[:half], told), *others.result()]
 
 
 def common_volumes(panels_step: str | os.PathLike[str], pairs: Sequence[tuple[int, int]]) -> list[float]:
@@ -203,14 +220,17 @@ def common_volumes(panels_step: str | os.PathLike[str], pairs: Sequence[tuple[in
     return _File(READER, Path(panels_step)).common_volumes(pairs)
 
 
-def _inspect_together(panels: Path, skins: Path, helper: Helper) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
-    work = _Work()
+def _inspect_together(
+    panels: Path, skins: Path, helper: Helper, told: Told
+) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
+    work = _Work(told)
     of_skins, helped = helper.begin(skins), helper.join(panels, work)
     try:
         work.do(_File(READER, panels))
     finally:
         work.end()
     found = of_skins.result()
+    told(len(found))  # the helper may have begun with them before anybody listened
     helped.result()
     return work.facts(), found
 
@@ -218,7 +238,8 @@ def _inspect_together(panels: Path, skins: Path, helper: Helper) -> tuple[list[S
 class _Work:
     """The shapes of one file, inspected from the front by the interpreter that has it, from the back by a helper."""
 
-    def __init__(self) -> None:
+    def __init__(self, told: Told) -> None:
+        self._told = told
         self._facts: dict[int, ShapeFacts] = {}
         self._ready: queue.SimpleQueue[Chunk | None] = queue.SimpleQueue()
         self._helped = threading.Event()
@@ -253,3 +274,4 @@ class _Work:
 
     def _take(self, places: Sequence[int], facts: Sequence[ShapeFacts]) -> None:
         self._facts.update(zip(places, facts, strict=True))
+        self._told(len(places))

@@ -241,7 +241,7 @@ class Told:
 
 @pytest.mark.parametrize("count", [0, 1, 15, 16, 17, 100])
 def test_the_shapes_of_a_file_are_each_inspected_once_by_one_of_two(count):
-    work: Any = parallel._Work()
+    work: Any = parallel._Work(parallel.unheard)
     own, other = Told(count, threading.Event()), Told(count)
     work._helped.set()
     work.do(own)
@@ -254,7 +254,7 @@ def test_the_shapes_of_a_file_are_each_inspected_once_by_one_of_two(count):
 
 
 def test_a_file_is_inspected_alone_where_the_helper_never_has_time():
-    work: Any = parallel._Work()
+    work: Any = parallel._Work(parallel.unheard)
     own = Told(100, threading.Event())
     work.do(own)
     assert own.asked == list(range(100))

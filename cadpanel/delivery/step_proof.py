@@ -121,7 +121,8 @@ def _frame_faults(folder: Path, contents: Contents) -> Iterator[str]:
             for panel, said in zip(contents.records, data, strict=True)
         ]
         title, who = f"{contents.title} {what}", (contents.shop.author, contents.shop.organization)
-        yield from frame_faults(folder / file, title, parts, contents.sheet.schema, who)
+        materials = [said.material for said in data if said is not None and said.material is not None]
+        yield from frame_faults(folder / file, title, parts, contents.sheet.schema, who, materials)
 
 
 def _expected_flat(shape: Panel, part: FlatPart, depth: float, tray: TrayShape | None) -> ExpectedFlat:

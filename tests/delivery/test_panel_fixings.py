@@ -89,8 +89,9 @@ def test_the_page_shows_the_holes_and_one_without_them_is_seen(folder: Path, rep
     was, shapes = page.read_bytes(), fitted().shapes
     numbers, shown = read_page(page)
     whole = packed(scene_of(fitted(), shapes, [shape.offset(-3.0) for shape in shapes]))
-    page.write_bytes(page_bytes("strip", numbers, shown | whole))
-    failures = ReportHtml().prove(folder, contents_of(report, recorded_shapes(report))).failures
+    contents = contents_of(report, recorded_shapes(report))
+    page.write_bytes(page_bytes(contents.title, numbers, shown | whole))
+    failures = ReportHtml().prove(folder, contents).failures
     page.write_bytes(was)
     assert len(failures) == len(report.panels)
     assert all("'report.html' does not show the" in said for said in failures)

@@ -1,4 +1,4 @@
-"""What a STEP file says around its geometry, as its text has it: schema, accuracy, products, and who hangs in what.
+"""What a STEP file says around its geometry, as its text has it: schema, accuracy, products, materials, assembly.
 
 Readers of the kernel let most of it pass: a part that hangs twice, a product without a name, an accuracy of 10 mm.
 """
@@ -12,6 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
+from cadpanel.brep.step.properties import Material
 from cadpanel.brep.step.schemas import SCHEMAS, UNCERTAINTY, Schema
 from cadpanel.brep.step.text import real, string
 
@@ -21,6 +22,8 @@ _INSTANCE = re.compile(rf"=NEXT_ASSEMBLY_USAGE_OCCURRENCE\({_STRING},({_STRING})
 _ACCURACY = re.compile(r"=UNCERTAINTY_MEASURE_WITH_UNIT\(LENGTH_MEASURE\(([^)]*)\)")
 _WHO = re.compile(rf"FILE_NAME\({_STRING},{_STRING},\(({_STRING})\),\(({_STRING})\),")
 _SCHEMA = re.compile(rf"FILE_SCHEMA\(\(({_STRING})\)\)")
+_MATERIAL = re.compile(rf"=DESCRIPTIVE_REPRESENTATION_ITEM\(({_STRING}),\1\)")
+_DENSITY = re.compile(r"=MEASURE_REPRESENTATION_ITEM\('density measure',NUMERIC_MEASURE\(([^)]*)\)")
 _EDGE, _ALONG = "=EDGE_CURVE(", ",.T.);"
 _PLACE = re.compile(r"=(?:CARTESIAN_POINT|DIRECTION|AXIS2_PLACEMENT_3D)\(")
 _ORIGIN = ("CARTESIAN_POINT('',(0.0,0.0,0.0));", "DIRECTION('',(0.,0.,1.));", "DIRECTION('',(1.,0.,0.));")
@@ -31,6 +34,8 @@ _MARKS = (
     "=UNCERTAINTY_MEASURE_WITH_UNIT(",
     "FILE_SCHEMA(",
     "FILE_NAME(",
+    "=DESCRIPTIVE_REPRESENTATION_ITEM(",
+    "'density measure'",
 )
 
 
@@ -43,7 +48,12 @@ class Part(NamedTuple):
 
 
 def frame_faults(
-    path: Path, title: str, parts: Sequence[Part], schema: Schema, who: tuple[str, str] = ("", "")
+    path: Path,
+    title: str,
+    parts: Sequence[Part],
+    schema: Schema,
+    who: tuple[str, str] = ("", ""),
+    materials: Sequence[Material] = (),
 ) -> Iterator[str]:
     """One sentence for everything around the geometry of a file that is not as it was to be.
 
@@ -53,6 +63,7 @@ def frame_faults(
         parts: what each part is called, in their order.
         schema: that was asked for.
         who: author and organization.
+        materials: of the parts that have one, in their order.
 
     Raises:
         OSError: it cannot be read.
@@ -65,6 +76,9 @@ def frame_faults(
         yield f"'{path.name}' does not say once that its accuracy is {UNCERTAINTY:g} mm."
     if _WHO.findall(text) != [(string(who[0]), string(who[1]))]:
         yield f"'{path.name}' does not say once that it is from '{who[0]}' of '{who[1]}'."
+    names = {string(one.name) for one in materials}
+    if set(_MATERIAL.findall(text)) != names or _DENSITY.findall(text) != [real(one.density) for one in materials]:
+        yield f"'{path.name}' does not say of every panel what it is made of, as the report has it."
     if not _begins_at_origin(path):
         yield f"'{path.name}' does not begin with the origin that all its parts share."
     if _EDGE in text:

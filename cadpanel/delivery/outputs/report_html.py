@@ -44,7 +44,7 @@ class ReportHtml(Output):
     def prove(self, folder: Path, contents: Contents) -> Proof:
         """Its numbers must be the report's; what it shows of seams may not exceed them, and every panel is there."""
         from cadpanel.delivery.page.flats import like_flats
-        from cadpanel.delivery.page.html import read_page
+        from cadpanel.delivery.page.html import is_written_so, read_page
         from cadpanel.delivery.page.numbers import page_numbers
 
         numbers, shapes = read_page(folder / PAGE)
@@ -54,6 +54,8 @@ class ReportHtml(Output):
         if not like_flats(shapes.get("flats"), _flats(contents)):
             failures.append(f"'{PAGE}' does not show the flat patterns of the report.")
         failures += _unlike(shapes, contents)
+        if not is_written_so(folder / PAGE, contents.title, numbers, shapes):
+            failures.append(f"'{PAGE}' is not the page that this version writes: write the delivery again.")
         return Proof(numbers={"panels": len(contents.records)}, failures=tuple(failures))
 
 

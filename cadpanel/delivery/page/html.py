@@ -40,6 +40,11 @@ def page_bytes(title: str, numbers: Mapping[str, Any], shapes: Mapping[str, Any]
     return re.sub(r"\{\{(\w+)\}\}", lambda place: parts[place[1]], _asset("page.html")).encode("utf-8")
 
 
+def is_written_so(path: Path, title: str, numbers: Mapping[str, Any], shapes: Mapping[str, Any]) -> bool:
+    """Whether a page is, to the last byte, what this program writes of some numbers and shapes."""
+    return path.read_bytes() == page_bytes(title, numbers, shapes)
+
+
 def read_page(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Numbers and shapes that a page holds.
 

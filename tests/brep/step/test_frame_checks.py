@@ -5,28 +5,31 @@ import pytest
 from cadpanel.brep.building.sheet import build_solid
 from cadpanel.brep.step.file import write_step
 from cadpanel.brep.step.frame_checks import Part, frame_faults
-from cadpanel.brep.step.properties import PartData
+from cadpanel.brep.step.properties import Material, PartData
 from cadpanel.brep.step.schemas import SCHEMAS
 from tests.shapes import folded_panel
 
 TITLE = "Größe d'or panels"
 PARTS = [Part("Größe/A", "A"), Part("Größe/B'2", "B'2", "plane, 3 mm")]
+MATERIALS = [Material(name="AlMg3", density=2660.0)]
 
 
 @pytest.fixture(scope="module")
 def text(tmp_path_factory):
     path = tmp_path_factory.mktemp("frame") / "panels.step"
     solids = [(name, build_solid(folded_panel(name=name), 3.0), (0.5, 0.5, 0.5)) for _, name, _ in PARTS]
-    write_step(
-        path, solids, title=TITLE, data=[PartData(number=part.number, description=part.description) for part in PARTS]
-    )
+    data = [
+        PartData(number=part.number, description=part.description, material=material)
+        for part, material in zip(PARTS, (None, *MATERIALS), strict=True)
+    ]
+    write_step(path, solids, title=TITLE, data=data)
     return path.read_text(encoding="ascii")
 
 
 def faults(tmp_path, text, parts=None, schema="AP242"):
     path = tmp_path / "panels.step"
     path.write_text(text, encoding="ascii")
-    return list(frame_faults(path, TITLE, PARTS if parts is None else parts, schema))
+    return list(frame_faults(path, TITLE, PARTS if parts is None else parts, schema, materials=MATERIALS))
 
 
 def test_what_was_written_holds(tmp_path, text):
@@ -57,6 +60,8 @@ def test_every_schema_is_told_by_its_name(tmp_path, schema):
         ("(''),(''),", "('Somebody'),(''),", "does not say once that it is from '' of ''"),
         ("(0.,0.,1.)", "(0.,0.001,1.)", "does not begin with the origin"),
         (",.T.);\n", ",.F.);\n", "has edges that run against their curves"),
+        ("NUMERIC_MEASURE(2660.", "NUMERIC_MEASURE(2669.", "does not say of every panel what it is made of"),
+        ("('AlMg3','AlMg3')", "('Steel','Steel')", "does not say of every panel what it is made of"),
     ],
 )
 def test_what_was_changed_is_told(tmp_path, text, old, new, says):

@@ -75,6 +75,23 @@ def test_a_page_that_tells_or_shows_something_else_is_not_proved(page, tmp_path)
 
 
 @pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("</body>", "<script src='https://example.org/x.js'></script></body>"),
+        ("</html>", ""),
+        ('{"', '{"x":1,"'),
+        ("<style>", "<style>body{display:none}"),
+    ],
+)
+def test_what_stands_in_a_page_besides_its_numbers_is_not_proved(page, tmp_path, old, new):
+    text = page.read_text(encoding="utf-8")
+    assert old in text
+    at = text.rindex(old) if old.startswith("</") else text.index(old)
+    (tmp_path / PAGE).write_text(text[:at] + new + text[at + len(old) :], encoding="utf-8")
+    assert ReportHtml().prove(tmp_path, delivery()).failures
+
+
+@pytest.mark.parametrize(
     ("content", "words"),
     [(b"<p>", "holds no cadpanel-numbers"), (b"\xff", "not UTF-8"), (None, "cannot be read: No such file")],
 )

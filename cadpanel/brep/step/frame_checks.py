@@ -76,8 +76,8 @@ def frame_faults(
         yield f"'{path.name}' does not say once that its accuracy is {UNCERTAINTY:g} mm."
     if _WHO.findall(text) != [(string(who[0]), string(who[1]))]:
         yield f"'{path.name}' does not say once that it is from '{who[0]}' of '{who[1]}'."
-    names = {string(one.name) for one in materials}
-    if set(_MATERIAL.findall(text)) != names or _DENSITY.findall(text) != [real(one.density) for one in materials]:
+    called = {string(one.name) for one in materials}
+    if set(_MATERIAL.findall(text)) != called or _DENSITY.findall(text) != [real(one.density) for one in materials]:
         yield f"'{path.name}' does not say of every panel what it is made of, as the report has it."
     if not _begins_at_origin(path):
         yield f"'{path.name}' does not begin with the origin that all its parts share."

@@ -55,6 +55,7 @@ def delivery() -> Delivery:
         shop=shop,
         records=with_flat_parts(panel_records(result, built), built.panels, parts, shop.density),
         seams=seam_records(result.reference, result.measures, built.joints),
+        shapes=tuple(panel.shape for panel in built.panels),
         parts=parts,
         summary=summary(result.measures, result.local, result.settings),
         result=result,

@@ -69,7 +69,9 @@ def _flats(contents: Contents) -> list[dict[str, Any]]:
 def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:
     """What the pictures show that the report does not tell."""
     from cadpanel.delivery.page.packing import unpacked
+    from cadpanel.delivery.page.picture_checks import off_their_panels
     from cadpanel.geometry.drilled_mesh import hole_count
+    from cadpanel.geometry.sheet_checks import sheet_depth
 
     try:
         scene = unpacked(shapes)
@@ -77,16 +79,19 @@ def _unlike(shapes: dict[str, Any], contents: Contents) -> list[str]:
         return [f"'{PAGE}' holds no panels that could be shown: {error}."]
     if [panel.name for panel in scene.panels] != [record.name for record in contents.records]:
         return [f"'{PAGE}' does not show the panels that are delivered."]
-    drilled = [
+    wrong = [
         f"'{PAGE}' does not show the {len(part.circles)} holes of panel '{panel.name}': write the delivery again."
         for panel, part in zip(scene.panels, contents.parts, strict=True)
         if hole_count(panel.triangles) != len(part.circles)
     ]
+    shown = zip(scene.panels, contents.shapes, strict=True)
+    depth = sheet_depth(contents.sheet.thickness, contents.sheet.skin_side)
+    wrong += [f"'{PAGE}' shows panel '{name}' where it is not." for name in off_their_panels(shown, depth)]
     told = {seam.panels + seam.edges: seam for seam in contents.seams}
     most: dict[tuple[str, str], float] = {}
     for seam in told.values():
         most[seam.panels] = max(most.get(seam.panels, 0.0), seam.max_seam_gap)
-    return drilled + [
+    return wrong + [
         f"'{PAGE}' shows a gap of {seam.profile.gap.max():.2f} mm between '{seam.panels[0]}' and '{seam.panels[1]}', "
         "more than the report tells."
         for seam in scene.seams

@@ -12,7 +12,7 @@ from cadpanel.delivery.page.ghosts import Ghost
 from cadpanel.delivery.page.scene import PanelScene, Scene, SeamScene
 from cadpanel.fitting.measures.profiles import SeamProfile
 
-_LEVELS = 65535
+LEVELS = 65535
 """Steps between the least and the largest value of a row of numbers: 0.06 mm on 4 m."""
 _ROUNDED = 4
 """Decimals of the boxes, mm and degrees."""
@@ -99,10 +99,10 @@ def _scene_of_seam(seam: Packed) -> SeamScene:
 def _boxed(rows: Array) -> Packed:
     """Rows (n, c) as whole numbers of steps above the least value of each column."""
     low = np.round(rows.min(axis=0), _ROUNDED)
-    step = np.maximum(rows.max(axis=0) - low, 0.0) / _LEVELS
+    step = np.maximum(rows.max(axis=0) - low, 0.0) / LEVELS
     # Steps are rounded to what JSON tells of them before they are counted with.
     step = np.array([float(f"{one:.9e}") for one in step])
-    counts = np.rint((rows - low) / np.where(step > 0.0, step, 1.0)).clip(0, _LEVELS)
+    counts = np.rint((rows - low) / np.where(step > 0.0, step, 1.0)).clip(0, LEVELS)
     return {"low": low.tolist(), "step": step.tolist(), "data": _text(counts.astype("<u2").tobytes())}
 
 

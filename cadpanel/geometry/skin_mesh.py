@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.geometry.cone_sections import AxisFrame, axis_frame
-from cadpanel.geometry.panel import Panel
+from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, lifted
+from cadpanel.geometry.panel import Chain, Panel
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.plane_section import plane_section
 from cadpanel.geometry.plane_sides import side_curves
@@ -47,11 +47,10 @@ def skin_mesh(shape: Panel) -> SkinMesh:
     """The mesh of a panel's skin; two panels with like patches and sweeps have the same triangles."""
     if isinstance(shape, TrayShape):
         return _tray_mesh(shape)
-    _, cut_normals = shape.cuts()
-    return _grid_mesh(shape) if len(cut_normals) else _polygon_mesh(shape)
+    return _grid_mesh(shape) if isinstance(shape, Chain) else _polygon_mesh(shape)
 
 
-def _grid_mesh(shape: Panel) -> SkinMesh:
+def _grid_mesh(shape: Chain) -> SkinMesh:
     """Of patches between two ends: rows from end to end, columns across."""
     grid, owners = _grid(shape)
     rows, columns = grid.shape[:2]
@@ -71,10 +70,10 @@ def _grid_mesh(shape: Panel) -> SkinMesh:
     )
 
 
-def _grid(shape: Panel) -> tuple[Array, IntArray]:
+def _grid(shape: Chain) -> tuple[Array, IntArray]:
     """(ALONG + 1, c, 3) points of the skin in rows from end 0 to end 1; (c - 1,) the patches between two of a row."""
     corners = shape.corners()
-    points, directions, normals = shape.rulings()
+    points, directions, normals = shape.points, shape.directions, shape.normals
     share = np.linspace(0.0, 1.0, ALONG + 1)[:, None, None]
     parts: list[Array] = []
     for index, patch in enumerate(shape.patches):
@@ -89,7 +88,7 @@ def _grid(shape: Panel) -> tuple[Array, IntArray]:
     return np.concatenate(parts, axis=1), np.repeat(np.arange(len(parts)), steps_of)
 
 
-def _round_grid(shape: Panel, index: int, frame: AxisFrame) -> Array:
+def _round_grid(shape: Chain, index: int, frame: AxisFrame) -> Array:
     """(ALONG + 1, c, 3) points of a round patch: between sides in planes the columns turn with these."""
     share = np.linspace(0.0, 1.0, ALONG + 1)[:, None]
     across = np.linspace(0.0, 1.0, min(_MOST_TURNS, max(ACROSS, math.ceil(abs(frame.sweep) / _TURN))) + 1)
@@ -99,9 +98,11 @@ def _round_grid(shape: Panel, index: int, frame: AxisFrame) -> Array:
             heights = (1.0 - share) * curve.heights[0] + share * curve.heights[1]
             borders[side] = curve.angles(heights[:, 0])[:, None]
     angles = (1.0 - across) * borders[0] + across * borders[1]
+    # Of a square sheet the other face ends where the skin's normals do: at the heights at which the skin is cut.
+    cut = lifted(frame, shape.lift)
     low, high = (
-        plane_section(frame, point, normal).heights(angles[[row]])[0]
-        for row, (point, normal) in zip((0, -1), zip(*shape.cuts(), strict=True), strict=True)
+        plane_section(cut, point, normal).heights(angles[[row]])[0]
+        for row, (point, normal) in zip((0, -1), zip(shape.cut_points, shape.cut_normals, strict=True), strict=True)
     )
     heights = (1.0 - share) * low + share * high
     return frame.points(angles.ravel(), heights.ravel()).reshape(*angles.shape, 3)

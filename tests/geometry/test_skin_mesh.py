@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cadpanel.features.catalogue import feature
 from cadpanel.fitting.measures.deviation import deviations
+from cadpanel.geometry.polyline import distances_to_polylines
+from cadpanel.geometry.self_crossing import end_polyline
 from cadpanel.geometry.shape import PolygonShape
 from cadpanel.geometry.skin_mesh import skin_mesh
 from tests.instances import NAMES, random_polygon, random_shapes
@@ -59,3 +62,16 @@ def test_facets_of_a_bend_turn_by_ten_degrees_at_most_and_by_no_less_than_looks_
     turns = np.unique(np.round(np.degrees(np.arctan2(doubled[:, 1], doubled[:, 2])), 6) % 360.0)
     facets = len(turns) - 2  # those of both flanges, along which the bend begins and ends
     assert facets == max(4, math.ceil(round(degrees / 10.0, 9)))
+
+
+@pytest.mark.parametrize("name", ["plane-cone-plane", "cone", "plane-cylinder-plane"])
+def test_the_mesh_of_a_square_sheets_other_face_ends_where_that_face_ends(name):
+    other = replace(random_shapes(feature(name), 4, 1)[0], square=True).offset(-12.0)
+    points = skin_mesh(other).points
+    for end in (0, 1):
+        ends = end_polyline(other, end, arc_points=400)
+        corners = other.corners()[end]
+        away = np.linalg.norm(points[:, None] - corners, axis=-1).min(axis=0)
+        assert away.max() < 1e-9
+        rim = points.reshape(9, -1, 3)[-end]
+        assert distances_to_polylines(rim[None], ends[None]).max() < 0.01

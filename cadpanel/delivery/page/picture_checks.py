@@ -35,7 +35,7 @@ def _off(points: Array, face: Panel) -> bool:
     """Whether points are not of a face, further than they are rounded: away from it, or short of a corner."""
     allowed = _ROUNDING + float(np.linalg.norm(np.ptp(points, axis=0))) / LEVELS
     corners = face.vertices() if isinstance(face, TrayShape) else face.corners().reshape(-1, 3)
-    if not cKDTree(points).query(corners)[0].max() <= allowed:
+    if not np.max(cKDTree(points).query(corners)[0]) <= allowed:
         return True
     if isinstance(face, TrayShape):
         return False

@@ -92,7 +92,7 @@ def test_a_cone_is_divided_into_sectors_up_to_its_apex(tmp_path):
         (
             BRepPrimAPI_MakeCylinder(RADIUS, HEIGHT),
             1,
-            "closes to a ring, and a panel cannot go round: divide it into 2",
+            "closes to a ring, and a panel cannot go round: divide it into a number",
         ),
         (BRepPrimAPI_MakeCylinder(500.0, 6000.0), 4, "closed round its length, and a panel cannot go round: cut it b"),
         (BRepPrimAPI_MakeTorus(2000.0, 400.0), 4, "closed round its length, and a panel cannot go round: cut it both"),

@@ -303,7 +303,7 @@ def certificate_faults(stated: CertificateModel, found: CertificateModel) -> Ite
         {f"{output}.{key}": number for output, numbers in one.outputs.items() for key, number in numbers.items()}
         for one in (stated, found)
     )
-    # What is wrong with an output is told by itself: of one that could not be looked at to its end there are no numbers.
+    # What is wrong with an output is told by itself: of one that is not looked at to its end there are no numbers.
     faulty = {output for output, numbers in found.outputs.items() if found.failures and not numbers}
     for key in sorted({*was_shown, *shown}):
         if key.partition(".")[0] in faulty:

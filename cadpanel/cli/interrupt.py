@@ -1,4 +1,4 @@
-"""Ctrl-C while something runs that can end early: the first ends it, the second stops the program."""
+"""Ctrl-C: it stops the program once; while something runs that can end early, the first ends that."""
 
 from __future__ import annotations
 
@@ -7,6 +7,31 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import NoReturn
+
+
+def stop_once(_signal: int, _frame: FrameType | None) -> NoReturn:
+    """Stop the program, and let nothing disturb it while it clears up: whoever presses three times means it once.
+
+    Raises:
+        KeyboardInterrupt: always.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def interrupts_stop_once() -> Iterator[None]:
+    """Heed Ctrl-C by `stop_once` while the block runs, where Ctrl-C stops programs at all."""
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield
+        return
+    signal.signal(signal.SIGINT, stop_once)
+    try:
+        yield
+    finally:
+        if signal.getsignal(signal.SIGINT) is stop_once:  # else it is on its way out, to its very end
+            signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Interrupt:
@@ -21,14 +46,14 @@ class Interrupt:
         self._looked = True
         return self._asked
 
-    def hear(self, _signal: int, _frame: FrameType | None) -> None:
+    def hear(self, number: int, frame: FrameType | None) -> None:
         """Take a Ctrl-C.
 
         Raises:
             KeyboardInterrupt: it is the second one, or nothing runs yet that could end early.
         """
         if self._asked or not self._looked:
-            raise KeyboardInterrupt
+            stop_once(number, frame)
         self._asked = True
 
 
@@ -37,11 +62,13 @@ def first_interrupt_ends() -> Iterator[Interrupt]:
     """Let the first Ctrl-C ask for an end while the block runs, where Ctrl-C stops programs at all."""
     interrupt = Interrupt()
     here = threading.current_thread() is threading.main_thread()
-    if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+    before = signal.getsignal(signal.SIGINT)
+    if not here or before not in (signal.default_int_handler, stop_once):
         yield interrupt
         return
     signal.signal(signal.SIGINT, interrupt.hear)
     try:
         yield interrupt
     finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        if signal.getsignal(signal.SIGINT) == interrupt.hear:
+            signal.signal(signal.SIGINT, before)

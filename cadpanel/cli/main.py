@@ -24,6 +24,7 @@ from cadpanel.cli.fit import fit
 from cadpanel.cli.freecad import freecad
 from cadpanel.cli.init import init
 from cadpanel.cli.inspect import inspect
+from cadpanel.cli.interrupt import interrupts_stop_once
 from cadpanel.cli.loft import loft
 from cadpanel.cli.printable import complain, forgive_encodings
 from cadpanel.cli.run import run
@@ -103,7 +104,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored
             signal.signal(gone, _stop)
     try:
-        with warnings.catch_warnings():
+        with interrupts_stop_once(), warnings.catch_warnings():
             # NumPy's remarks on single operations are not for users; what comes of them is checked, and told.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = app(args=arguments, prog_name="cadpanel", standalone_mode=False)

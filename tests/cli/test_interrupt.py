@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from cadpanel.cli.interrupt import first_interrupt_ends
+from cadpanel.cli.interrupt import first_interrupt_ends, interrupts_stop_once
 
 
 @pytest.fixture(autouse=True)
@@ -23,8 +23,19 @@ def test_once_somebody_listens_the_first_interrupt_is_heard_and_the_second_stops
         assert interrupt.heard()
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)  # nothing disturbs it while it clears up
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_a_program_is_stopped_once_and_one_that_was_not_leaves_interrupts_as_they_were():
+    with interrupts_stop_once(), first_interrupt_ends() as interrupt:
+        assert not interrupt.heard()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    with interrupts_stop_once():
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 
 
 def test_before_anybody_listens_an_interrupt_stops_at_once():

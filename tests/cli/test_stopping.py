@@ -139,11 +139,11 @@ def test_the_first_interrupt_while_it_fits_delivers_the_best_so_far(
 
 
 @thorough
-def test_the_second_interrupt_stops_it_and_leaves_nothing(
+def test_the_second_interrupt_stops_it_and_more_disturb_nothing(
     lip_step: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     with started(lip_step, tmp_path, tmp_path_factory.mktemp("told") / "it fits") as process:
-        for _ in range(2):
+        for _ in range(4):
             time.sleep(0.02)
             os.kill(process.pid, signal.SIGINT)
         _, err = process.communicate(timeout=60)

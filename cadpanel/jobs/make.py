@@ -113,11 +113,26 @@ def make_delivery(
     return make(asked, folder, shown, time_limit, ending)
 
 
+class _Reading:
+    """Reads a reference however it is cut, and counts the seconds of all readings."""
+
+    def __init__(self, file: Path) -> None:
+        self._file, self.seconds = file, 0.0
+
+    def __call__(self, how: ReferenceSettings) -> Reference:
+        from cadpanel.brep.read import read_reference
+
+        began = time.perf_counter()
+        reference = read_reference(self._file, how)
+        self.seconds += time.perf_counter() - began
+        return reference
+
+
 class _Fitting:
     """Fits of one file that is cut in one way or another, which share what time there is.
 
     Attributes:
-        seconds_to_read: that reading has taken.
+        read: reads it, and counts the seconds of that.
     """
 
     def __init__(
@@ -127,19 +142,16 @@ class _Fitting:
         time_limit: float | None,
         ending: Callable[[], AbstractContextManager[Ending]],
     ) -> None:
-        self.seconds_to_read = 0.0
+        self.read = _Reading(asked.file)
         self._asked, self._shown, self._ending = asked, shown, ending
         self._limit, self._until, self._heard = time_limit, math.inf, False
 
     def fit(self, how: ReferenceSettings) -> FitResult:
         """Read and fit; the time of all fits begins with the first one."""
-        from cadpanel.brep.read import read_reference
         from cadpanel.delivery.earlier import with_earlier
         from cadpanel.fitting.run import fit
 
-        began = time.perf_counter()
-        reference = read_reference(self._asked.file, how)
-        self.seconds_to_read += time.perf_counter() - began
+        reference = self.read(how)
         # Refused before the fit.
         chosen_panels([panel.name for panel in reference.panels], self._asked.shop.only)
         settings = with_earlier(self._asked.settings, reference, self._asked.folder_of)
@@ -175,7 +187,7 @@ def _once(
     fitting = _Fitting(asked, shown, time_limit, ending)
     fits = partial(blanks_fit, sheet=asked.sheet, shop=asked.shop)
     result = fitted_to_stock(asked.how, fitting.fit, fits, fitting.over)
-    return _delivered(asked, result, folder, shown, fitting.seconds_to_read, result.shortfall())
+    return _delivered(asked, result, folder, shown, fitting.read.seconds, result.shortfall())
 
 
 def _fewest(
@@ -186,20 +198,17 @@ def _fewest(
     ending: Callable[[], AbstractContextManager[Ending]],
 ) -> tuple[ReportModel, str | None]:
     """The same with the fewest panels along each strip that hold everything."""
-    from cadpanel.brep.read import read_reference
     from cadpanel.delivery.blanks_fit import blanks_fit
     from cadpanel.delivery.earlier import with_earlier
     from cadpanel.studies.fewest_panels import MOST, fewest_panels
 
-    seconds_to_read = 0.0
+    reading = _Reading(asked.file)
 
     def read(count: int) -> Reference:
-        nonlocal seconds_to_read
-        began = time.perf_counter()
-        reference = read_reference(asked.file, replace(asked.how, divide=count))
-        if seconds_to_read == 0.0:  # what fits no panel of any number is refused before the first fit
+        first = not reading.seconds
+        reference = reading(replace(asked.how, divide=count))
+        if first:  # what fits no panel of any number is refused before the first fit
             chosen_panels(names_along((panel.name for panel in reference.panels), MOST), asked.shop.only)
-        seconds_to_read += time.perf_counter() - began
         return reference
 
     with ending() as interrupted:
@@ -217,7 +226,7 @@ def _fewest(
         found = fewest_panels(
             read, asked.settings, progress=tell, time_limit=time_limit, prepare=prepare, admitted=fit_stock
         )
-    return _delivered(asked, found.result, folder, shown, seconds_to_read, found.shortfall())
+    return _delivered(asked, found.result, folder, shown, reading.seconds, found.shortfall())
 
 
 def _strips(
@@ -228,18 +237,10 @@ def _strips(
     ending: Callable[[], AbstractContextManager[Ending]],
 ) -> tuple[ReportModel, str | None]:
     """The same with panels one after the other, each as wide as the largest deviation allows."""
-    from cadpanel.brep.read import read_reference
     from cadpanel.delivery.earlier import with_earlier
-    from cadpanel.studies.widest_strips import Cuts, uncut, widest_strips
+    from cadpanel.studies.widest_strips import uncut, widest_strips
 
-    seconds_to_read = 0.0
-
-    def read(cuts: Cuts) -> Reference:
-        nonlocal seconds_to_read
-        began = time.perf_counter()
-        reference = read_reference(asked.file, uncut(asked.how, cuts))
-        seconds_to_read += time.perf_counter() - began
-        return reference
+    reading = _Reading(asked.file)
 
     with ending() as interrupted:
 
@@ -248,14 +249,14 @@ def _strips(
             return not interrupted.heard()
 
         found = widest_strips(
-            read,
+            lambda cuts: reading(uncut(asked.how, cuts)),
             asked.settings,
             progress=tell,
             time_limit=time_limit,
             prepare=partial(with_earlier, folder_of=asked.folder_of),
         )
     chosen_panels([panel.name for panel in found.result.reference.panels], asked.shop.only)
-    return _delivered(asked, found.result, folder, shown, seconds_to_read, found.result.shortfall())
+    return _delivered(asked, found.result, folder, shown, reading.seconds, found.result.shortfall())
 
 
 def _delivered(

@@ -144,7 +144,18 @@ def measure(folder: Path, regions: int, panels: int, workers: int, seed: int) ->
         write(Fixture(file=f"{name}.step", prefix=name, table=(), lip=lip), folder / f"{name}.step")
         job.append(f'[regions.{name}]\nreference = "{name}.step"\n')
     (folder / "job.toml").write_text("\n".join(job), encoding="utf-8")
-    words = [sys.executable, "-m", "cadpanel.cli.main", "run", "job.toml", "--out", "out", "--cache", "cache", "--quiet"]
+    words = [
+        sys.executable,
+        "-m",
+        "cadpanel.cli.main",
+        "run",
+        "job.toml",
+        "--out",
+        "out",
+        "--cache",
+        "cache",
+        "--quiet",
+    ]
     before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     running = subprocess.Popen([*words, *(["--workers", str(workers)] if workers > 1 else [])], cwd=folder)
     memory = Memory(running.pid)

@@ -108,3 +108,30 @@ def test_legs_that_face_each_other_come_as_near_as_two_sheets_and_no_nearer() ->
         behind = (point - vertices) @ way
         near.append(behind[behind > 1.5 * THICKNESS].min())
     assert min(near) == pytest.approx(2.0 * THICKNESS, abs=0.01)
+
+
+@pytest.mark.parametrize("edges", [None, ("edge 0",), ("edge 0", "edge 1")])
+def test_a_face_ends_in_corners_of_its_own_between_which_its_edges_run(edges: tuple[str, ...] | None) -> None:
+    for lift in (0.0, -THICKNESS):
+        shape = tray(edges=edges).offset(lift)
+        vertices = shape.vertices()
+        apart = np.linalg.norm(vertices[:, None] - vertices, axis=-1)
+        assert (apart[~np.eye(len(vertices), dtype=bool)] > 0.1).all()
+        for name in shape.edges:
+            ends = shape.edge(name).corners
+            assert np.linalg.norm(ends[:, None] - vertices, axis=-1).min(axis=1) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_plane_with_two_ends_is_folded_like_a_polygon_with_the_same_corners() -> None:
+    chain = random_panel(1, chain="plane").squared(sheet_depth(THICKNESS, "outer"))
+    rows = chain.corners()
+    polygon = replace(
+        flat((0.0,) * 4), outline=np.concatenate([rows[0], rows[1, ::-1]]), normal=chain.normals[0], posts=None
+    )
+    around = tuple(f"edge {place}" for place in range(4))
+    of_chain, of_polygon = (
+        folded_tray(one, edges, RULE, THICKNESS, "outer")
+        for one, edges in ((chain, ("end 0", "side 1", "end 1", "side 0")), (polygon, around))
+    )
+    assert of_chain.vertices() == pytest.approx(of_polygon.vertices(), abs=1e-6)
+    assert of_chain.area() == pytest.approx(of_polygon.area())

@@ -53,7 +53,7 @@ def test_a_cone_is_cut_in_the_plane_all_over_its_sweep(half_angle, sweep, slant)
         for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
     ]
     for end, section in enumerate(sections):
-        assert 0.0 <= section.start < 2.0 * math.pi
+        assert 0.0 <= section.start < min(section.stop, 2.0 * math.pi)
         parameters = np.linspace(section.start, section.stop, 9)
         points = section.points(parameters)
         assert points[[0, -1]] == pytest.approx(shape.corners()[end], abs=LENGTH_ERROR)
@@ -147,9 +147,11 @@ def test_a_cut_as_steep_as_the_cone_is_no_ellipse(tilt, elliptic):
             elliptic_section(frame, cut)
 
 
-def test_a_cut_along_the_axis_is_refused():
+def test_a_cut_along_the_axis_is_refused_and_one_that_leans_a_little_to_it_is_none():
     shape = folded_panel()
     _, _, frame = cone_of(shape)
+    leaning = 0.1 * frame.axis + math.sqrt(0.99) * frame.radial
+    assert cut_cone(frame, shape.cut_points[0], leaning).rise == pytest.approx(0.1)
     with pytest.raises(ValueError, match="does not cross the axis"):
         cut_cone(frame, shape.cut_points[0], frame.radial)
 

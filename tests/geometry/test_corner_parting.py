@@ -63,6 +63,16 @@ def test_panels_that_meet_without_a_seam_are_set_back_along_a_free_edge():
     assert [sorted(own) for own in walls] == [["edge 2"], ["edge 0"]]
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_panels_that_pass_each_other_are_left_as_they_are_though_none_is_beyond_a_wall_of_the_other(way):
+    """One reaches over the other by 1 mm, 50 mm above it."""
+    panels = [square("A", [5000.0, -3000.0, 0.0]), square("B", [5000.0 + way * (SIDE - 1.0), -3000.0, 50.0])]
+    cut: list[Any] = list(panels)
+    part_at_corners(cut, panels, [{}, {}], [], -3.0)
+    assert cut[0] is panels[0]
+    assert cut[1] is panels[1]
+
+
 def test_panels_that_cover_each_other_are_left_as_they_are():
     panels = [square("A", [0.0, 0.0, 0.0]), square("B", [500.0, 500.0, 1.0])]
     cut: list[Any] = list(panels)

@@ -35,6 +35,12 @@ def test_of_chains_joined_to_longer_ones_the_last_piece_stands_there_again():
     assert joined(numbered(2, 1, 0), numbered(2, 1, 5)).curves[16].tolist() == [0, 1, 5, 6]
 
 
+def test_a_part_of_chains_has_whole_ones():
+    chains = numbered(2, 4, 0)
+    assert chains.part(slice(1, 3)).curves[0].tolist() == [2, 3, 4, 5]
+    assert chains.part(slice(2, None)).normals[8].tolist() == [-4, -5, -6, -7]
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_chain_runs_where_its_curve_runs(kind):
     curves, chains, columns, w = pieces(kind)

@@ -11,7 +11,7 @@ from cadpanel.errors import PanelError
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.flat_sizes import flat_sizes
 from cadpanel.geometry.panel import CutPlane
-from cadpanel.geometry.plane_sides import SideCurve, side_curve, side_curves
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve, side_curves
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import check_buildable, skin_side_of
 from cadpanel.geometry.skin_mesh import skin_mesh
@@ -168,6 +168,25 @@ def test_planes_that_leave_nothing_or_miss_are_refused():
         narrow.check()
     with pytest.raises(PanelError, match="side 1"):
         frustum().cut_back({"side 1": jointed(frustum(), 1, -2_000.0, 0.0)}, -3.0)
+
+
+def test_a_panel_may_be_narrow_between_the_walls_at_its_sides():
+    narrow = frustum(sweep=0.3)
+    for side in (0, 1):
+        narrow = narrow.walled(side, jointed(frustum(sweep=0.3), side, 100.0, 0.0))
+    narrow.check()
+    assert (np.diff(end_spans(narrow)[:, 0], axis=-1) < 0.15).all()
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_side_need_not_go_on_in_its_plane_beyond_the_panels_ends(side):
+    """Towards the apex, where a cone is narrower than the plane is far from its axis."""
+    shape = frustum(half_angle=0.4, radius=400.0)
+    walled = shape.walled(side, jointed(shape, side, 120.0, 0.0))
+    walled.check()
+    curve = side_curve(walled, side)
+    assert curve is not None
+    assert np.isnan(curve.angles(curve.heights[0] - np.ptp(curve.heights) * SHARES)).any()
 
 
 @pytest.mark.parametrize("depth", [-8.0, 3.0])

@@ -102,6 +102,33 @@ def test_the_flat_pattern_keeps_area_and_lengths(depth):
         assert (np.linalg.norm(np.diff(lines, axis=1), axis=-1) > 900.0).all()
 
 
+def test_rulings_between_sides_in_planes_meet_in_the_flat_apex():
+    (pattern,) = unroll_all([cut_frustum(-3.0)], np.zeros(1))
+    (bend,) = pattern.bends
+    lines = pattern.rulings(bend, np.array([0.0, 0.3, 0.6, 1.0]))
+    starts, ways = lines[:, 0], np.diff(lines, axis=1)[:, 0]
+    apart = np.linalg.solve(np.stack([ways[0], -ways[3]], axis=1), starts[3] - starts[0])
+    apex = starts[0] + apart[0] * ways[0]
+    off = apex - starts
+    assert np.abs(ways[:, 0] * off[:, 1] - ways[:, 1] * off[:, 0]).max() < 1e-6 * np.linalg.norm(ways, axis=1).max()
+    turns = np.arctan2(*off.T[::-1])
+    assert np.diff(turns) / (turns[-1] - turns[0]) == pytest.approx([0.3, 0.3, 0.4], abs=1e-9)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_of_several_cones_the_one_at_the_side_keeps_its_area_and_its_plane(side):
+    shape = folded_panel(chain="cpc", half_angle=0.15, radius=900.0, sweep=1.0)
+    cut = shape.cut_back({f"side {side}": jointed(shape, side, 10.0, 25.0)}, -3.0)
+    (pattern,) = unroll_all([cut], np.zeros(1))
+    (size,) = flat_sizes([pattern])
+    assert size.area == pytest.approx(cut.area(), rel=1e-10)
+    assert np.abs(np.roll(pattern.curves.start, -1, axis=0) - pattern.curves.stop).max() < CLOSE
+    (curve,) = curves_of(cut)
+    points = curve.points(curve.heights[0] + np.linspace(0.0, 1.0, 4001) * np.diff(curve.heights))
+    along = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+    assert size.edges[f"side {side}"] == pytest.approx(along, rel=1e-8)
+
+
 def test_the_mesh_lies_on_the_skin_and_ends_at_its_sides():
     cut = cut_frustum(-3.0)
     mesh = skin_mesh(cut)

@@ -11,7 +11,7 @@ from cadpanel.errors import PanelError
 from cadpanel.geometry.bevels import edge_bevels
 from cadpanel.geometry.flat_sizes import flat_sizes
 from cadpanel.geometry.panel import CutPlane
-from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve, side_curves
+from cadpanel.geometry.plane_sides import SideCurve, end_spans, side_curve, side_curves, side_tangents
 from cadpanel.geometry.shape import PanelShape
 from cadpanel.geometry.sheet_checks import check_buildable, skin_side_of
 from cadpanel.geometry.skin_mesh import skin_mesh
@@ -201,3 +201,46 @@ def test_a_square_wall_keeps_behind_the_plane_and_touches_it_with_its_shorter_fa
         edge = cut.edge(f"side {side}")
         beyond = [(row - edge.corners[0]) @ edge.outward for row in (points, others)]
         assert max(row.max() for row in beyond) == pytest.approx(0.0, abs=CLOSE)
+
+
+@pytest.mark.parametrize("half_angle", [0.3, 0.0, -0.3])
+def test_a_side_lies_in_the_triangle_of_its_chord_and_the_tangents_at_its_corners(half_angle):
+    shape = frustum(half_angle=half_angle)
+    shape = shape.walled(0, jointed(shape, 0, 10.0, 30.0, 0.1)).walled(1, jointed(shape, 1, 10.0, -20.0, 0.2))
+    for curve in curves_of(shape):
+        tangents = side_tangents(curve)
+        start, meet = tangents.centers
+        stop = meet + tangents.cosine_axes[1]
+        assert start + tangents.cosine_axes[0] == pytest.approx(meet)
+        low, high = curve.heights
+        step = 1e-3 * np.sign(high - low)
+        points = curve.points(np.array([low, low + step, high - step, high]))
+        assert np.array([start, stop]) == pytest.approx(points[[0, 3]], abs=CLOSE)
+        for way, near in ((meet - start, points[:2]), (stop - meet, points[2:])):
+            along = np.diff(near, axis=0)[0]
+            assert (along @ way) / np.linalg.norm(along) / np.linalg.norm(way) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_side_that_runs_straight_has_one_tangent():
+    """In a plane along a cylinder's axis."""
+    shape = frustum(half_angle=0.0)
+    for curve in curves_of(shape.walled(0, jointed(shape, 0, 10.0, 0.0))):
+        tangents = side_tangents(curve)
+        assert len(tangents) == 1
+        assert tangents.centers + tangents.cosine_axes == pytest.approx(curve.points(curve.heights[1:]))
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_of_several_cones_each_side_is_that_of_the_nearest(side):
+    shape = folded_panel(chain="cpc", radius=900.0, half_angle=0.1, sweep=0.6, widths=(200.0,), turns=(0.0,))
+    plane = jointed(shape, side, 10.0, 20.0)
+    cut = shape.walled(side, plane)
+    curve = side_curve(cut, side)
+    assert curve is not None
+    points = curve.points(curve.heights[0] + SHARES * np.ptp(curve.heights))
+    assert plane.beyond(points) == pytest.approx(np.zeros(33), abs=CLOSE)
+    expected = shape.corners()
+    expected[:, -side] = points[[0, -1]]
+    assert cut.corners() == pytest.approx(expected, abs=CLOSE)
+    assert np.linalg.norm(points - shape.corners()[:, -side].mean(axis=0), axis=1).min() < 50.0
+    assert (abs(curve.corners) if side == 0 else abs(curve.corners - 0.6)) == pytest.approx([0.01, 0.01], abs=0.05)

@@ -31,22 +31,22 @@ def shown_binary(solid: TopoDS_Solid) -> bytes:
     vertices = [BRep_Tool.Pnt_s(TopoDS.Vertex_s(vertex)).Coord() for vertex in shapes_of(solid, TopAbs_VERTEX)]
     # Vertices are among the corners of triangles, which so lie at least as close as they say.
     BRepMesh_IncrementalMesh(solid, shown_deflection(np.array(vertices)), False, _WIDEST_ANGLE, False)
-    _say(solid, shown_deflection(_corners(solid)))
+    say_deflection(solid, shown_deflection(corners_of(solid)))
     data = kept_binary(solid, triangles=True)
     BRepTools.Clean_s(solid)
     return data
 
 
-def _corners(solid: TopoDS_Solid) -> Array:
-    """(n, 3) the corners of a shape's triangles, mm."""
+def corners_of(solid: TopoDS_Solid) -> Array:
+    """(n, 3) the corners of a solid's triangles, mm."""
     meshes = [BRep_Tool.Triangulation_s(face, TopLoc_Location()) for face in faces_of(solid)]
     return np.array(
         [mesh.Node(place).Coord() for mesh in meshes for place in range(1, mesh.NbNodes() + 1)], dtype=np.float64
     )
 
 
-def _say(solid: TopoDS_Solid, deflection: float) -> None:
-    """Have all triangles and all polygons of edges say how close they lie."""
+def say_deflection(solid: TopoDS_Solid, deflection: float) -> None:
+    """Have all triangles of a solid and all polygons of its edges say how close they lie, mm."""
     for face in faces_of(solid):
         mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
         mesh.Deflection(deflection)

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_Plane
 from OCP.Poly import Poly_Triangulation
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
@@ -35,6 +36,8 @@ _SAID_SHARE = 1e-9
 # Of the products that make a triangle's area, which it has at least, or rounding might have turned it over.
 _LEAST_SHARE = 1e-12
 _NEXT = [1, 2, 0]
+
+Coordinates = tuple[float, float, float]
 
 
 class _Facets(NamedTuple):
@@ -106,16 +109,15 @@ def _facets(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation]) 
         if not placed.IsIdentity() or not mesh.HasUVNodes() or not mesh.NbTriangles():
             raise _UntrueError("have no place on their face")
         named = np.array([mesh.Triangle(place).Get() for place in range(1, mesh.NbTriangles() + 1)], dtype=np.intp) - 1
-        _check_named(named, len(own))
+        if named.min() < 0 or named.max() >= len(own):
+            raise _UntrueError("have corners that there are not")
         points.append([mesh.Node(place).Coord() for place in own])
         places.append(np.array([mesh.UVNode(place).Coord() for place in own]))
         if not np.isfinite(places[-1]).all():
             raise _UntrueError("have no place on their face")
         met = places[-1][named]
         looked_at = np.concatenate([places[-1], 0.5 * (met + met[:, _NEXT]).reshape(-1, 2), met.mean(axis=1)])
-        seen.append(
-            np.split(kernel_values(BRepAdaptor_Surface(face), looked_at)[:, 0], [len(own), len(own) + 3 * len(named)])
-        )
+        seen.append(np.split(_on(BRepAdaptor_Surface(face), looked_at), [len(own), len(own) + 3 * len(named)]))
         corners.append(named + count)
         starts.append(count)
         count += len(own)
@@ -123,34 +125,42 @@ def _facets(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation]) 
     return _Facets(np.concatenate(points), np.concatenate(places), np.concatenate(corners), everywhere), starts
 
 
+def _on(surface: BRepAdaptor_Surface, places: Array) -> Array:
+    """(n, 3) where a surface is at parameters (n, 2), mm."""
+    if surface.GetType() == GeomAbs_Plane:
+        return kernel_values(surface, places)[:, 0]
+    return np.array([surface.Value(u, v).Coord() for u, v in places.tolist()])
+
+
 def _rim(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation], starts: Sequence[int]) -> _Rim:
     """The polygons of all edges of all faces, in the surfaces' own sense."""
-    sides, points, forward = [], [], []
+    sides: list[tuple[int, int]] = []
+    points: list[tuple[Coordinates, ...]] = []
+    forward: list[bool] = []
     for face, mesh, start in zip(faces, meshes, starts, strict=True):
         for edge in edges_of(face.Oriented(TopAbs_FORWARD)):
             polygon = BRep_Tool.PolygonOnTriangulation_s(edge, mesh, TopLoc_Location())
             if polygon is None or not polygon.HasParameters() or polygon.NbNodes() < 2:
                 raise _UntrueError("do not follow an edge")
             count = polygon.NbNodes()
-            nodes = np.array([polygon.Node(place) for place in range(1, count + 1)], dtype=np.intp) - 1
-            _check_named(nodes, mesh.NbNodes())
+            nodes = [polygon.Node(place) for place in range(1, count + 1)]
+            if min(nodes) < 1 or max(nodes) > mesh.NbNodes():
+                raise _UntrueError("have corners that there are not")
             curve = BRepAdaptor_Curve(edge)
             along = [polygon.Parameter(place) for place in range(1, count + 1)]
-            ends = np.array([curve.FirstParameter(), curve.LastParameter()])
-            whole = bool((np.abs(ends - (along[0], along[-1])) <= _SAID_SHARE * np.ptp(ends)).all())
+            first, last = curve.FirstParameter(), curve.LastParameter()
+            near = _SAID_SHARE * (last - first)
+            whole = abs(along[0] - first) <= near and abs(along[-1] - last) <= near
             if not whole or not all(before < after for before, after in pairwise(along)):
                 raise _UntrueError("do not follow an edge")
-            met = np.array([curve.Value(where).Coord() for where in along])
+            met = [curve.Value(where).Coord() for where in along]
             middles = [curve.Value(0.5 * (before + after)).Coord() for before, after in pairwise(along)]
-            sides.append(np.stack([nodes[:-1], nodes[1:]], axis=-1) + start)
-            points.append(np.stack([met[:-1], middles, met[1:]], axis=1))
+            sides += [(start + before - 1, start + after - 1) for before, after in pairwise(nodes)]
+            points += zip(met[:-1], middles, met[1:], strict=True)
             forward += [edge.Orientation() != TopAbs_REVERSED] * (count - 1)
-    return _Rim(np.concatenate(sides), np.concatenate(points), np.array(forward))
-
-
-def _check_named(named: IntArray, count: int) -> None:
-    if not (named.min() >= 0 and named.max() < count):
-        raise _UntrueError("have corners that there are not")
+    if not sides:
+        raise _UntrueError("do not follow an edge")
+    return _Rim(np.array(sides, dtype=np.intp), np.array(points), np.array(forward))
 
 
 def _check_said(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation], wanted: float) -> None:

@@ -148,14 +148,16 @@ def test_whatever_is_changed_in_triangles_is_told(change: Change, told: str) -> 
     assert shown_fault(shape) == told
 
 
-def test_triangles_that_lie_too_far_from_a_cone_are_told_whatever_they_say(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_triangles_that_lie_too_far_from_a_cone_are_told_whatever_they_say(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     shape = build_solid(random_shapes(feature("plane-cone-plane"), 4, 1)[0], 3.0)
     monkeypatch.setattr(building, "_WIDEST_ANGLE", math.pi)
     monkeypatch.setattr(building, "shown_deflection", lambda points: 50.0 * shown_deflection(points))
     coarse = kept_shape(building.shown_binary(shape))
-    wanted = shown_deflection(building._corners(coarse))
+    wanted = shown_deflection(building.corners_of(coarse))
     assert shown_fault(coarse) == "say another distance than FreeCAD asks for"
-    building._say(coarse, wanted)
+    building.say_deflection(coarse, wanted)
     assert shown_fault(coarse).startswith("lie farther from ")
 
 

@@ -56,3 +56,17 @@ def is_closed(corners: IntArray) -> bool:
     ways, counts = np.unique(sides, axis=0, return_counts=True)
     back = np.unique(sides[:, ::-1], axis=0)
     return bool((counts == 1).all() and ways.shape == back.shape and (ways == back).all())
+
+
+SHOWN_DEVIATION = 1.0
+"""How far FreeCAD's triangles may lie from a panel, percent of its size; FreeCAD's own is 0.5."""
+
+
+def shown_deflection(points: Array, deviation: float = SHOWN_DEVIATION) -> float:
+    """How far triangles may lie from the shape that they show in FreeCAD, mm.
+
+    Args:
+        points: (n, 3) corners of all triangles.
+        deviation: percent of a third of length, width and height together.
+    """
+    return float(np.ptp(points, axis=0).sum()) / 300.0 * deviation

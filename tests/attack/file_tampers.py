@@ -7,6 +7,14 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.gp import gp_Trsf, gp_Vec
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+
+from cadpanel.brep.kernel.kept import kept_binary, kept_shape
+from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.delivery.manifest import MANIFEST
 from tests.attack.report_tampers import edited
 
@@ -132,11 +140,26 @@ def _in_document(pattern: bytes, replacement: bytes) -> Tamper:
     return _rezipped("panels.FCStd", change)
 
 
-def _other_shapes(name: str, data: bytes) -> bytes:
-    """A number of 100 or more of every shape, larger by 1."""
-    if not name.endswith(".brp"):
-        return data
-    return re.sub(rb"(?<=[ \n])(\d{3}\.\d+)", lambda found: repr(float(found[1]) + 1.0).encode(), data, count=1)
+def _of_shapes(change: Callable[[TopoDS_Shape], TopoDS_Shape], *, of: str = "", triangles: bool = True) -> Tamper:
+    """Shapes of the document, those whose names begin so, changed by the kernel."""
+
+    def changed(name: str, data: bytes) -> bytes:
+        wanted = name.endswith(".bin") and name.startswith(of)
+        return kept_binary(change(kept_shape(data)), triangles=triangles) if wanted else data
+
+    return _rezipped("panels.FCStd", changed)
+
+
+def _moved(shape: TopoDS_Shape) -> TopoDS_Shape:
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(1.0, 0.0, 0.0))
+    return BRepBuilderAPI_Transform(shape, move, True, True).Shape()
+
+
+def _corner_of_a_triangle_moved(shape: TopoDS_Shape) -> TopoDS_Shape:
+    mesh = BRep_Tool.Triangulation_s(faces_of(shape)[-1], TopLoc_Location())
+    mesh.SetNode(1, mesh.Node(1).Translated(gp_Vec(0.0, 0.0, 0.01)))
+    return shape
 
 
 def _of_manifest(change: Callable[[dict[str, dict[str, object]]], object]) -> Tamper:
@@ -190,7 +213,9 @@ FILES: dict[str, Tamper] = {
     "mesh: a name": _text("panels.glb", "N-02", "N-07"),
     "document: a property": _in_document(rb'(<Float value=")[^"]*', rb"\g<1>9.5"),
     "document: a name": _in_document(rb'value="N-02"', b'value="N-07"'),
-    "document: a shape moved": _rezipped("panels.FCStd", _other_shapes),
+    "document: shapes moved": _of_shapes(_moved),
+    "document: triangles moved": _of_shapes(_corner_of_a_triangle_moved, of="panel"),
+    "document: triangles left out": _of_shapes(lambda shape: shape, of="panel", triangles=False),
     "page: a number": _page(r'("deviation": ?)[\d.]+', r"\g<1>0.001"),
     "page: a name": _page("N-02", "N-07"),
     "page: a script": _page("</body>", "<script src='https://example.org/x.js'></script></body>"),

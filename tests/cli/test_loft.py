@@ -43,8 +43,8 @@ def test_a_loft_is_written_and_read_back(run, file, tmp_path):
     assert (facts.valid, facts.faces) == (True, record.proof.faces)
     assert facts.area == pytest.approx(record.flat.area, rel=1e-6)
     kept = kept_areas(tmp_path / "loft" / "loft.FCStd")
-    assert kept["Surface.brp"] == pytest.approx(record.flat.area, rel=1e-6)
-    assert kept["FlatPattern.brp"] == pytest.approx(record.proof.drawn_area, rel=1e-6)
+    assert kept["Surface.bin"] == pytest.approx(record.flat.area, rel=1e-6)
+    assert kept["FlatPattern.bin"] == pytest.approx(record.proof.drawn_area, rel=1e-6)
     drawing = ezdxf.filemanagement.readfile(tmp_path / "loft" / "loft.dxf")
     assert not drawing.audit().errors
     assert {entity.dxf.layer for entity in drawing.modelspace()} == {"CUT", "ROLL"}

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from OCP.BRep import BRep_Tool
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.TopLoc import TopLoc_Location
 
 import cadpanel as cp
+from cadpanel.brep.building.shown import say_deflection
+from cadpanel.brep.kernel.kept import kept_binary, kept_shape
+from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.delivery.deliver import deliver
+from cadpanel.delivery.document.tree import panel_file
 from cadpanel.delivery.outputs.freecad import DOCUMENT
 from cadpanel.delivery.own_files import LOFT_DOCUMENT, REPORT
 from cadpanel.delivery.records.report import ReportModel, read_report
@@ -135,6 +143,41 @@ def test_the_window_shows_panels_coloured_by_deviation_and_red_seams(
     red = sum(count for (red, green, blue), count in pixels.items() if red >= 5 and max(green, blue) <= 2)
     assert min(yellow, violet) > 0.005 * whole
     assert red > 20
+
+
+def test_the_window_shows_panels_by_the_triangles_that_come_with_them_and_makes_none_of_what_is_hidden(
+    answers: dict[str, dict[str, Any]], folder: Path, tmp_path: Path
+) -> None:
+    kept = triangles_in(folder / DOCUMENT)
+    shown = answers["window"]["screen"]["triangles"]
+    assert [shown[f"N {place}"] for place in (1, 2, 3)] == kept
+    assert all(not shown[f"N {place} {what}"] for place in (1, 2, 3) for what in ("skin", "flat"))
+    # Made anew, there would be as many as before: the first panel brings many more, and says that they are as coarse.
+    finer = tmp_path / DOCUMENT
+    with zipfile.ZipFile(folder / DOCUMENT) as archive, zipfile.ZipFile(finer, "w") as written:
+        for name in archive.namelist():
+            data = archive.read(name)
+            if name == panel_file(0):
+                solid = kept_shape(data)
+                wanted = BRep_Tool.Triangulation_s(faces_of(solid)[0], TopLoc_Location()).Deflection()
+                BRepMesh_IncrementalMesh(solid, 0.02 * wanted)
+                say_deflection(solid, wanted)
+                data = kept_binary(solid, triangles=True)
+            written.writestr(name, data)
+    many = triangles_in(finer)
+    assert many[0] > 2 * kept[0]
+    again = run_in_freecad("document_driver.py", {"CADPANEL_DOCUMENT": str(finer)}, window=True)["screen"]["triangles"]
+    assert [again[f"N {place}"] for place in (1, 2, 3)] == many
+
+
+def triangles_in(document: Path) -> list[int]:
+    """How many triangles come with each of the three solids."""
+    with zipfile.ZipFile(document) as archive:
+        solids = [kept_shape(archive.read(panel_file(place))) for place in range(3)]
+    return [
+        sum(BRep_Tool.Triangulation_s(face, TopLoc_Location()).NbTriangles() for face in faces_of(solid))
+        for solid in solids
+    ]
 
 
 @thorough

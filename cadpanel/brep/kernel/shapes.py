@@ -7,12 +7,9 @@ from io import BytesIO
 
 from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Builder
-from OCP.BRepTools import BRepTools
-from OCP.Message import Message_ProgressRange
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Edge, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
-from OCP.TopTools import TopTools_FormatVersion
 
 
 def shapes_of(
@@ -70,19 +67,4 @@ def unpacked(data: bytes) -> TopoDS_Shape:
     """The shape again."""
     shape = TopoDS_Shape()
     BinTools.Read_s(shape, BytesIO(data))
-    return shape
-
-
-def brep_text(shape: TopoDS_Shape) -> bytes:
-    """A shape as the text of a .brep file, vertices to 15 digits, in its first version, which all programs read."""
-    stream = BytesIO()
-    version = TopTools_FormatVersion.TopTools_FormatVersion_VERSION_1
-    BRepTools.Write_s(shape, stream, False, False, version, Message_ProgressRange())
-    return stream.getvalue()
-
-
-def shape_of_text(text: bytes) -> TopoDS_Shape:
-    """The shape again; a null one where the text is none."""
-    shape = TopoDS_Shape()
-    BRepTools.Read_s(shape, BytesIO(text), BRep_Builder())
     return shape

@@ -1,4 +1,4 @@
-"""Archives that keep shapes as text, as FreeCAD's documents do: read through the kernel and measured."""
+"""Archives that keep shapes, as FreeCAD's documents do: read through the kernel and measured."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cadpanel.brep.building.mass_properties import areas_and_centroids
 from cadpanel.brep.building.sheet import volume_of
-from cadpanel.brep.kernel.shapes import faces_of, shape_of_text, shapes_of
+from cadpanel.brep.kernel.kept import kept_shape
+from cadpanel.brep.kernel.shapes import faces_of, shapes_of
 from cadpanel.brep.proof.inspection import vertices_of
 from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.brep.proof.loft_facts import close_area
+from cadpanel.brep.proof.shown import has_triangles, shown_fault
 from cadpanel.errors import DeliveryError
 
-SHAPE_ENDING = ".brp"
+SHAPE_ENDING = ".bin"
 
 
 def kept_facts(path: Path) -> dict[str, KeptFacts]:
@@ -43,12 +45,12 @@ def kept_areas(path: Path) -> dict[str, float]:
 def _shapes(path: Path) -> dict[str, TopoDS_Shape]:
     try:
         with ZipFile(path) as archive:
-            texts = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
+            kept = {name: archive.read(name) for name in archive.namelist() if name.endswith(SHAPE_ENDING)}
     except OSError as error:
         raise DeliveryError(f"'{path}' cannot be read: {error.strerror or error}.") from error
     except (BadZipFile, zlib.error) as error:
         raise DeliveryError(f"'{path}' cannot be read: it is damaged ({error}); write the delivery again.") from error
-    found = {name: shape_of_text(text) for name, text in texts.items()}
+    found = {name: kept_shape(data) for name, data in kept.items()}
     for name, shape in found.items():
         if shape.IsNull():
             raise DeliveryError(
@@ -59,7 +61,7 @@ def _shapes(path: Path) -> dict[str, TopoDS_Shape]:
 
 def _measured(shape: TopoDS_Shape) -> KeptFacts:
     solids = len(shapes_of(shape, TopAbs_SOLID))
-    faces = faces_of(shape)
+    faces, triangles = faces_of(shape), has_triangles(shape)
     return KeptFacts(
         solids=solids,
         faces=len(faces),
@@ -67,6 +69,8 @@ def _measured(shape: TopoDS_Shape) -> KeptFacts:
         volume=volume_of(shape) if solids else 0.0,
         area=0.0 if solids else float(areas_and_centroids(faces)[0].sum()),
         vertices=vertices_of(shape),
+        triangles=triangles,
+        triangles_fault=shown_fault(shape) if triangles else "",
     )
 
 

@@ -1,4 +1,4 @@
-"""What a shape that an archive keeps as text really is, in a few plain numbers. Nothing of the kernel is imported."""
+"""What a shape that an archive keeps really is, in a few plain numbers. Nothing of the kernel is imported."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ class KeptFacts:
         volume: of the solids, mm3; 0 without any.
         area: of the faces where there is no solid, mm2: it takes the kernel longer than all the rest.
         vertices: (v, 3) mm.
+        triangles: whether it brings triangles, or polygons of edges, to be shown by.
+        triangles_fault: what is wrong with these, as the rest of a sentence; empty if nothing is.
     """
 
     solids: int
@@ -24,3 +26,5 @@ class KeptFacts:
     volume: float
     area: float
     vertices: Array
+    triangles: bool
+    triangles_fault: str

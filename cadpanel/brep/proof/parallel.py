@@ -187,7 +187,7 @@ def inspect_files(
 
 
 def inspect_archive(path: Path) -> dict[str, KeptFacts]:
-    """Facts of every shape that an archive keeps as text, by the names of their files.
+    """Facts of every shape that an archive keeps, by the names of their files.
 
     Raises:
         DeliveryError: it cannot be read, or the kernel crashes over it or does not end.

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.drawn import flat_face
-from cadpanel.brep.kernel.shapes import brep_text
+from cadpanel.brep.kernel.kept import kept_binary
 from cadpanel.brep.step.file import read_step_shapes
 from cadpanel.delivery.document.archive import camera, packed
 from cadpanel.delivery.document.colors import FLAT, SKIN
@@ -17,7 +17,7 @@ from cadpanel.delivery.document.objects import AnyProperty, Body, Lines, Look, N
 from cadpanel.delivery.document.xml import document_xml, gui_xml
 from cadpanel.lofting.loft import Loft
 
-SURFACE_FILE, FLAT_FILE = "Surface.brp", "FlatPattern.brp"
+SURFACE_FILE, FLAT_FILE = "Surface.bin", "FlatPattern.bin"
 # Rulings of each piece by which the camera is set.
 _SEEN = 9
 
@@ -55,8 +55,8 @@ def loft_bytes(loft: Loft, step: Path, contour: Array, rulings: Array) -> bytes:
     )
     seen = np.concatenate([np.concatenate(ends) for ends in loft.rulings(_SEEN)])
     shapes = (
-        (SURFACE_FILE, brep_text(surface)),
-        (FLAT_FILE, brep_text(flat_face(contour, rulings, np.empty((0, 3))))),
+        (SURFACE_FILE, kept_binary(surface)),
+        (FLAT_FILE, kept_binary(flat_face(contour, rulings, np.empty((0, 3))))),
     )
     return packed(document_xml(loft.name, objects), gui_xml(objects, camera(seen)), shapes)
 

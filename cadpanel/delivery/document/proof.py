@@ -1,7 +1,8 @@
 """A document read back: its numbers are those of the report, and its shapes the panels of the STEP files.
 
 The report's numbers, which are held against the STEP files by the certificate, give the text of the document again byte
-for byte. Shapes are held against the same volumes, areas and corners as those in the STEP files, as closely.
+for byte. Shapes are held against the same volumes, areas and corners as those in the STEP files, as closely, and the
+triangles that come with solids against these (`brep.proof.shown`).
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ def prove_document(path: Path, contents: Contents) -> Proof:
         failures += [f"'{path.name}': panel '{panel.name}': {what}" for what in _panel_faults(panel, solid, skin, off)]
         reach = contents.shop.chord * sum(part.size.edges.values()) + _AREA_SHARE * part.size.area
         area = part.size.area - 0.25 * math.pi * float(np.sum(part.circles[:, 2] ** 2))
-        if flat.faces != 1 or abs(flat.area - area) > reach:
+        if flat.faces != 1 or flat.triangles or abs(flat.area - area) > reach:
             failures.append(f"'{path.name}': panel '{panel.name}': its flat pattern is not that of the report.")
     failures += [f"'{path.name}': {what}" for what in _hole_faults(contents, facts)]
     failures += [f"'{path.name}': {what}" for what in _seam_faults(contents, facts)]
@@ -97,6 +98,12 @@ def _panel_faults(panel: PanelModel, solid: KeptFacts, skin: KeptFacts, off: tup
     area = abs(skin.area / panel.area - 1.0)
     if area > VOLUME_LIMIT:
         yield f"the area of its skin is off by {area:.2g} of itself."
+    if not solid.triangles:
+        yield "its solid has no triangles, by which FreeCAD shows it."
+    if solid.triangles_fault:
+        yield f"triangles of its solid {solid.triangles_fault}."
+    if skin.triangles:
+        yield "its skin has triangles, which belong to solids."
     for what, apart in zip(("solid", "skin"), off, strict=True):
         if apart > POSITION_LIMIT:
             yield f"a corner of its {what} is {apart:.3g} mm away from where it is expected."
@@ -127,7 +134,7 @@ def _seam_faults(contents: Contents, facts: Mapping[str, KeptFacts]) -> Iterator
             continue
         if kept is None or kept.edges != sum(len(row) - 1 for row in rows):
             yield f"{of} is not drawn from corner to corner."
-        elif _apart(kept.vertices, np.concatenate(rows)) > POSITION_LIMIT:
+        elif kept.triangles or _apart(kept.vertices, np.concatenate(rows)) > POSITION_LIMIT:
             yield f"{of} is not drawn where the two panels end."
 
 

@@ -42,23 +42,23 @@ def tree(contents: Contents) -> list[DocumentObject]:
 
 
 def panel_file(place: int) -> str:
-    """Where the archive keeps the solid of the panel at that place."""
-    return f"panel{place + 1}.brp"
+    """Where the archive keeps the solid of the panel at that place; FreeCAD tells by the ending that it is binary."""
+    return f"panel{place + 1}.bin"
 
 
 def skin_file(place: int) -> str:
     """Where it keeps the skin."""
-    return f"skin{place + 1}.brp"
+    return f"skin{place + 1}.bin"
 
 
 def flat_file(place: int) -> str:
     """Where it keeps the flat pattern."""
-    return f"flat{place + 1}.brp"
+    return f"flat{place + 1}.bin"
 
 
 def seam_file(place: int) -> str:
     """Where it keeps the lines of the seam at that place among those that are drawn."""
-    return f"seam{place + 1}.brp"
+    return f"seam{place + 1}.bin"
 
 
 def drawn_seams(contents: Contents) -> list[SeamModel]:

@@ -24,6 +24,7 @@ from cadpanel.delivery.document.objects import (
     Yes,
 )
 from cadpanel.delivery.schedule.csv_text import Row
+from cadpanel.geometry.triangles import SHOWN_DEVIATION
 
 HEAD = "<?xml version='1.0' encoding='utf-8'?>\n"
 # Marks of a property that FreeCAD's own objects have: how their status is kept.
@@ -32,8 +33,6 @@ _LABEL_STATUS, _SHOWN_STATUS = 134217728, 648
 _NOT_IN_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff\ud800-\udfff]")
 # FreeCAD's own share of the light that comes from everywhere.
 _AMBIENT = (1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0)
-# How far triangles on the screen may lie from a shape, percent of its size; FreeCAD's own is 0.5.
-_DEVIATION = 1.0
 _GROUP = "App::DocumentObjectGroup"
 
 
@@ -214,7 +213,7 @@ def _column(place: int) -> str:
 def _look(look: Look) -> Iterator[str]:
     if look.faces is not None:
         # Before it is shown, which is when FreeCAD meshes it: half of the time in which a document opens.
-        yield _seen("Deviation", "FloatConstraint", f'<Float value="{_DEVIATION!r}"/>')
+        yield _seen("Deviation", "FloatConstraint", f'<Float value="{SHOWN_DEVIATION!r}"/>')
     yield _seen("Visibility", "Bool", f'<Bool value="{str(look.visible).lower()}"/>')
     colors: Mapping[str, Color | None] = {"ShapeColor": look.faces, "LineColor": look.lines, "PointColor": look.lines}
     for name, color in colors.items():

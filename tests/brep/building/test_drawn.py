@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ import pytest
 from cadpanel.brep.building.drawn import edges_along, flat_face
 from cadpanel.brep.building.mass_properties import areas_and_centroids
 from cadpanel.brep.building.sheet import build_skin
-from cadpanel.brep.kernel.shapes import brep_text, edges_of, faces_of, loose_edges, shape_of_text
+from cadpanel.brep.kernel.kept import kept_binary, kept_shape
+from cadpanel.brep.kernel.shapes import edges_of, faces_of, loose_edges
 from cadpanel.brep.proof.inspection import inspect, vertices_of
 from cadpanel.features.catalogue import feature
 from cadpanel.geometry.biarcs import arc_contour_area
@@ -64,8 +66,11 @@ def test_edges_of_skins_are_found_along_their_corners() -> None:
 
 def test_a_shape_is_the_same_after_it_was_text() -> None:
     skin = build_skin(random_shapes(feature("tri-cone"), 2, 1)[0])
-    again = shape_of_text(brep_text(skin))
+    again = kept_shape(kept_binary(skin))
     assert vertices_of(again) == pytest.approx(vertices_of(skin), rel=1e-14)
     areas = [areas_and_centroids(faces_of(shape))[0] for shape in (again, skin)]
     assert areas[0] == pytest.approx(areas[1], rel=1e-13)
-    assert shape_of_text(b"no shape").IsNull()
+    data = kept_binary(skin)
+    tail = struct.pack("<3i", 10_000, 0, 0)
+    for damaged in (b"no shape", data[:40], data[:400], data[:-12] + tail):
+        assert kept_shape(damaged).IsNull()

@@ -8,10 +8,18 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.gp import gp_Pnt
+from OCP.Poly import Poly_Polygon3D, Poly_Triangle
+from OCP.TColgp import TColgp_Array1OfPnt
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.drawn import flat_face
-from cadpanel.brep.kernel.shapes import brep_text
+from cadpanel.brep.kernel.kept import kept_binary, kept_shape
+from cadpanel.brep.kernel.shapes import edges_of, faces_of
 from cadpanel.delivery.contents import Contents
 from cadpanel.delivery.document.archive import archive_bytes
 from cadpanel.delivery.document.proof import edge_row, prove_document
@@ -111,6 +119,35 @@ def edited(file: str, old: bytes, new: bytes) -> Callable[[Files], None]:
     return change
 
 
+def kept_again(file: str, change: Callable[[TopoDS_Shape], None] | None = None) -> Callable[[Files], None]:
+    """A shape read, changed and written, without triangles where nothing is changed."""
+
+    def of_files(files: Files) -> None:
+        shape = kept_shape(files[file])
+        if change is not None:
+            change(shape)
+        files[file] = kept_binary(shape, triangles=change is not None)
+
+    return of_files
+
+
+def turned_over(shape: TopoDS_Shape) -> None:
+    mesh = BRep_Tool.Triangulation_s(faces_of(shape)[0], TopLoc_Location())
+    first, second, third = mesh.Triangle(1).Get()
+    mesh.SetTriangle(1, Poly_Triangle(second, first, third))
+
+
+def meshed(shape: TopoDS_Shape) -> None:
+    BRepMesh_IncrementalMesh(shape, 10.0)
+
+
+def drawn_elsewhere(shape: TopoDS_Shape) -> None:
+    ends = TColgp_Array1OfPnt(1, 2)
+    ends.SetValue(1, gp_Pnt(0.0, 0.0, 0.0))
+    ends.SetValue(2, gp_Pnt(1.0, 0.0, 0.0))
+    BRep_Builder().UpdateEdge(edges_of(shape)[0], Poly_Polygon3D(ends), TopLoc_Location())
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
@@ -123,6 +160,14 @@ def edited(file: str, old: bytes, new: bytes) -> Callable[[Files], None]:
         (swapped(flat_file(1), flat_file(2)), "panel 'N 2': its flat pattern is not that of the report."),
         (swapped(seam_file(0), seam_file(1)), "the seam of 'N 1' and 'N 2' is not drawn where the two panels end."),
         (swapped(seam_file(0), skin_file(1)), "the seam of 'N 1' and 'N 2' is not drawn from corner to corner."),
+        (kept_again(panel_file(1)), "panel 'N 2': its solid has no triangles, by which FreeCAD shows it."),
+        (kept_again(panel_file(1), turned_over), "panel 'N 2': triangles of its solid are turned over."),
+        (kept_again(skin_file(1), meshed), "panel 'N 2': its skin has triangles, which belong to solids."),
+        (kept_again(flat_file(1), meshed), "panel 'N 2': its flat pattern is not that of the report."),
+        (
+            kept_again(seam_file(0), drawn_elsewhere),
+            "the seam of 'N 1' and 'N 2' is not drawn where the two panels end.",
+        ),
         (without(flat_file(0)), "panel 'N 1' has lost its solid, its skin or its flat"),
         (replaced("last.txt", b""), "its shapes do not stand between numbers and looks"),
     ],
@@ -136,7 +181,7 @@ def test_whatever_is_changed_shows(
 
 
 def test_what_cannot_be_read_is_refused(delivery: Delivery, written: bytes, tmp_path: Path) -> None:
-    with pytest.raises(DeliveryError, match=r"the shape 'panel1\.brp' in it is damaged"):
+    with pytest.raises(DeliveryError, match=r"the shape 'panel1\.bin' in it is damaged"):
         prove_document(changed(written, tmp_path, replaced(panel_file(0), b"no shape")), delivery)
     (tmp_path / "cut.FCStd").write_bytes(written[:1000])
     with pytest.raises(DeliveryError, match="it is damaged"):
@@ -190,7 +235,7 @@ def test_flat_patterns_do_not_lie_on_each_other(delivery: Contents) -> None:
     boxes = [(contour[:, :2].min(axis=0), contour[:, :2].max(axis=0)) for contour, *_ in laid_out(delivery)]
     for i, (low, high) in enumerate(boxes):
         assert all((high < others_low).any() or (low > others_high).any() for others_low, others_high in boxes[:i])
-    assert brep_text(flat_face(*laid_out(delivery)[0])).startswith(b"\nCASCADE Topology V1")
+    assert kept_binary(flat_face(*laid_out(delivery)[0])).startswith(b"\nOpen CASCADE Topology V3")
 
 
 def test_holes_are_in_flat_patterns_and_each_of_them_is_missed(tmp_path: Path) -> None:
@@ -202,7 +247,7 @@ def test_holes_are_in_flat_patterns_and_each_of_them_is_missed(tmp_path: Path) -
     for other in (holes[1:], holes + [[0.001, 0.0, 0.0]] * (holes[:, :1] == holes[0, 0])):
 
         def change(files: Files, other: Array = other) -> None:
-            files[flat_file(1)] = brep_text(flat_face(contour, lines, other))
+            files[flat_file(1)] = kept_binary(flat_face(contour, lines, other))
 
         failures = prove_document(changed(written, tmp_path, change), drilled).failures
         assert failures == ("'panels.FCStd': panel 'N 2': the holes in its flat pattern are not those of the report.",)

@@ -29,7 +29,7 @@ from cadpanel.delivery.document.xml import document_xml, gui_xml, quoted
 from cadpanel.delivery.schedule.csv_text import Row
 
 PANELS = Group(name="Panels", label="Panels")
-BODY = Body(name="Panel1", label="N", parent="Panels", file="panel1.brp", look=Look(faces=(1.0, 0.5, 0.0)))
+BODY = Body(name="Panel1", label="N", parent="Panels", file="panel1.bin", look=Look(faces=(1.0, 0.5, 0.0)))
 
 
 @settings(max_examples=50)
@@ -50,7 +50,7 @@ def test_groups_name_what_stands_in_them_and_come_before_it() -> None:
         ("Part::Feature", "Panel1"),
     ]
     assert root.find("Properties/Property/String").get("value") == "a <&> b"  # type: ignore[union-attr]
-    assert [part.get("file") for part in root.iter("Part")] == ["panel1.brp"]
+    assert [part.get("file") for part in root.iter("Part")] == ["panel1.bin"]
 
 
 def test_properties_are_told_with_their_types_values_and_whether_they_may_be_changed() -> None:

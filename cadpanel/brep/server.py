@@ -13,6 +13,7 @@ from typing import BinaryIO, cast
 from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.curves.rails import FileCurves, load_curves
+from cadpanel.brep.cutting.products_by_two import products_by_two
 from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
 from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
@@ -41,6 +42,9 @@ def panels(request: Request, go_on: GoOn) -> RawReference:
         CadpanelError: one of them is refused.
     """
     how = cast(ReferenceSettings, request.argument)
+    by_two = products_by_two(request.path, how)
+    if by_two is not None:
+        return by_two
     found = load_reference(request.path, how)
     drawn = None
     if isinstance(found, Model):

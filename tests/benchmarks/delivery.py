@@ -168,6 +168,8 @@ def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Too
             if helper is not None:
                 helper.begin(folder / SKINS)
             write_solids(folder / PANELS, built, "strip")
+            if helper is not None:
+                helper.open(folder / PANELS)
 
         timed(seconds, "write", write_both)
         certificate = timed(seconds, "verify", lambda: prove(folder, reference, built, helper))

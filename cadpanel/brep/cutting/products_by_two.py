@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import cast
+from typing import NamedTuple, cast
 
 from OCP.Standard import Standard_Failure
 
@@ -29,11 +29,13 @@ from cadpanel.brep.isolation.requests import SECONDS_TO_WORK
 from cadpanel.brep.isolation.time_limit import limit_time
 from cadpanel.brep.skin.panel_cleanup import Mended
 from cadpanel.errors import CadpanelError
+from cadpanel.reference.outline import Outline, find_outline
 from cadpanel.reference.settings import ReferenceSettings
 
 WORTHWHILE_BYTES = 8_000_000
 """Size of a file from which reading takes a second or more."""
 Place = tuple[float, float, float]
+AT_HOME: Place = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +59,13 @@ class _Told:
 
     names: tuple[str, ...]
     origin: Place | None
+
+
+class _Done(NamedTuple):
+    """Some of the panels, and their outlines."""
+
+    mended: Mended
+    outlines: tuple[Outline, ...]
 
 
 def products_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
@@ -93,10 +102,9 @@ def _read_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
         if found is not None:
             channel.say(found.said)
             limit_time(SECONDS_TO_WORK)
-            channel.say(found.mended(cast(_Told, channel.hear()), how))
+            channel.say(found.done(cast(_Told, channel.hear()), how))
 
     with beside(other_half) as channel:
-        check_step_text(path, text)
         del text
         own = _Half.read(cut.one, path.name)
         if own is None:
@@ -108,12 +116,16 @@ def _read_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
         origin = origin_within([own.said.extent, other.extent], path.name)
         count = len(own.said.called)
         channel.say(_Told(names=tuple(names[count:]), origin=origin))
-        first = own.mended(_Told(names=tuple(names[:count]), origin=origin), how)
-        mended = first.followed_by(cast(Mended, channel.hear()))
-    notes = mended.notes(path.name, how.seam_tolerance)
-    if origin is None:
-        return RawReference(panels=mended.panels, notes=notes)
-    return RawReference(panels=mended.panels, notes=(origin_note(path.name, origin), *notes), origin=origin)
+        first = own.done(_Told(names=tuple(names[:count]), origin=origin), how)
+        last = cast(_Done, channel.hear())
+    mended = first.mended.followed_by(last.mended)
+    moved = () if origin is None else (origin_note(path.name, origin),)
+    return RawReference(
+        panels=mended.panels,
+        notes=(*moved, *mended.notes(path.name, how.seam_tolerance)),
+        origin=origin or AT_HOME,
+        outlines=(*first.outlines, *last.outlines),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,7 +138,12 @@ class _Half:
 
     @classmethod
     def read(cls, part: StepPart, source: str) -> _Half | None:
-        """Read a part of a file of that name; None where it holds other things than so many products."""
+        """Read a part of a file of that name; None where it holds other things than so many products.
+
+        Raises:
+            CadpanelError: it is damaged.
+        """
+        check_step_text(Path(source), b"".join(part.pieces))
         with _as_file(part.pieces) as path:
             read = read_plain_products(path, part.products)
         if read is None:
@@ -141,11 +158,16 @@ class _Half:
             ),
         )
 
-    def mended(self, told: _Told, how: ReferenceSettings) -> Mended:
-        """Its panels, sampled and mended, under their names and near their origin."""
+    def done(self, told: _Told, how: ReferenceSettings) -> _Done:
+        """Its panels, sampled and mended, under their names and near their origin.
+
+        Raises:
+            CadpanelError: one of them is none.
+        """
         named = tuple(replace(one, name=name) for one, name in zip(self.shapes, told.names, strict=True))
         shapes = named if told.origin is None else moved_back(named, told.origin)
-        return mended_products(shapes, self.source, how.seam_tolerance)
+        mended = mended_products(shapes, self.source, how.seam_tolerance)
+        return _Done(mended, tuple(find_outline(panel, self.source, how.seam_tolerance) for panel in mended.panels))
 
 
 @contextmanager

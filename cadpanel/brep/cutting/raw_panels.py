@@ -23,6 +23,7 @@ from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.geometry.limits import LARGEST_COORDINATE
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import FaceSamples, RawPanel
+from cadpanel.reference.outline import Outline
 from cadpanel.reference.settings import ReferenceSettings
 
 # Panels sampled together: enough to share the overhead, few enough to take little memory.
@@ -37,11 +38,13 @@ class RawReference:
         panels: sampled faces, panel by panel, mm.
         notes: what was mended or moved, and what should be known of the file, one sentence each.
         origin: what was taken off all coordinates of the file, mm.
+        outlines: of the panels, where they are found already.
     """
 
     panels: tuple[RawPanel, ...]
     notes: tuple[str, ...]
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    outlines: tuple[Outline, ...] | None = None
 
 
 def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | None = None) -> RawReference:

@@ -12,6 +12,7 @@ from cadpanel.brep.cutting import raw_panels as whole
 from cadpanel.brep.files.loading import load_reference
 from cadpanel.brep.files.step import read_plain_products
 from cadpanel.brep.isolation.beside import POSSIBLE
+from cadpanel.reference.outline import find_outline
 from cadpanel.reference.settings import ReferenceSettings
 
 pytestmark = pytest.mark.skipif(not POSSIBLE, reason="this system copies no processes")
@@ -45,6 +46,11 @@ def assert_same(found, wanted):
     assert [panel.name for panel in found.panels] == [panel.name for panel in wanted.panels]
     assert found.notes == wanted.notes
     assert found.origin == wanted.origin
+    wanted_outlines = [find_outline(panel, "changed.step", HOW.seam_tolerance) for panel in wanted.panels]
+    for own, same in zip(found.outlines, wanted_outlines, strict=True):
+        assert own.face_signs == same.face_signs
+        for side, other in zip(own.sides, same.sides, strict=True):
+            np.testing.assert_array_equal(side.points, other.points)
     for one, other in zip(found.panels, wanted.panels, strict=True):
         for array, same in zip(arrays(one), arrays(other), strict=True):
             np.testing.assert_array_equal(array, same)

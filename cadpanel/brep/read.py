@@ -48,7 +48,7 @@ def read_reference(path: str | Path, settings: ReferenceSettings | None = None) 
 
 def _read(path: Path, how: ReferenceSettings) -> Reference:
     raw = read_raw_panels(path, how)
-    reference = assemble(raw.panels, source=path.name, seam_tolerance=how.seam_tolerance, junctions=how.junctions)
+    reference = assemble(raw.panels, path.name, how.seam_tolerance, how.junctions, raw.outlines)
     return replace(reference, notes=(*reference.notes, *raw.notes), settings=how, origin=raw.origin)
 
 

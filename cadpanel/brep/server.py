@@ -12,7 +12,9 @@ from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
 
+from cadpanel.brep.building.many import ToBuild, measure_sheets
 from cadpanel.brep.curves.rails import FileCurves, load_curves
+from cadpanel.brep.cutting.products_by_two import products_by_two
 from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
 from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
@@ -41,6 +43,9 @@ def panels(request: Request, go_on: GoOn) -> RawReference:
         CadpanelError: one of them is refused.
     """
     how = cast(ReferenceSettings, request.argument)
+    by_two = products_by_two(request.path, how)
+    if by_two is not None:
+        return by_two
     found = load_reference(request.path, how)
     drawn = None
     if isinstance(found, Model):
@@ -85,6 +90,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
     "kept": lambda request, _: kept_facts(request.path),
+    "measure": lambda request, _: measure_sheets(cast(Sequence[ToBuild], request.argument)),
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
     "back": lambda request, go_on: find_back(request.path, cast(Path, request.argument), go_on),
     "close": lambda _request, _: INSPECTOR.close(),

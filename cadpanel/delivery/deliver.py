@@ -14,7 +14,7 @@ from cadpanel.delivery.chosen_panels import chosen_panels
 from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.outputs.catalogue import OUTPUTS, chosen_outputs
 from cadpanel.delivery.outputs.output import Delivery, Output
-from cadpanel.delivery.outputs.step_files import SKINS
+from cadpanel.delivery.outputs.step_files import PANELS, SKINS
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.records.certified import CertificateModel, TimingModel
 from cadpanel.delivery.records.flat_parts import flat_parts
@@ -162,12 +162,14 @@ def _in_turn(outputs: Sequence[Output]) -> tuple[list[Output], list[Output]]:
 
 
 def _write(folder: Path, delivery: Delivery, outputs: Sequence[Output], tell: Progress, helper: Helper | None) -> None:
-    """Every output that is asked for; a helper reads the skins while the others are being written."""
+    """Every output that is asked for; panels and skins are read while the others are being written."""
     for place, output in enumerate(outputs):
         tell("write", place, len(outputs))
         output.write(folder, delivery)
         if helper is not None and SKINS in output.files:
             helper.begin(folder / SKINS)
+        if helper is not None and PANELS in output.files:
+            helper.open(folder / PANELS)
     tell("write", len(outputs), len(outputs))
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
+from typing import NamedTuple
 
-from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and_centroid
-from cadpanel.brep.building.sheet import build_panel
+from cadpanel.arrays import Array
+from cadpanel.brep.building.many import MadeSheet, ToBuild, make_sheets
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.brep.step.properties import Validation
 from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
@@ -19,7 +21,6 @@ from cadpanel.geometry.joint_widths import widest_joint
 from cadpanel.geometry.joints import Joint, Jointed, cut_to_seams
 from cadpanel.geometry.panel import Panel, Straightened
 from cadpanel.geometry.sheet_checks import other_face, sheet_depth
-from cadpanel.geometry.volume import sheet_volume
 from cadpanel.reference.model import Seam
 
 # What is going on, how much of it is done, and of how much.
@@ -141,19 +142,38 @@ def _build_all(
     asked: tuple[SheetSettings, ShopSettings],
     tell: Progress,
 ) -> tuple[PanelSheet, ...]:
-    built: list[PanelSheet] = []
-    for one, shape in zip(straight, jointed.shapes, strict=True):
-        built.append(_build(one, returned(shape, *asked), *asked))
-        tell("build", len(built), len(straight))
-    return tuple(built)
+    planned = [_plan(one, returned(shape, *asked), *asked) for one, shape in zip(straight, jointed.shapes, strict=True)]
+    done = count(1)
+
+    def told(more: int) -> None:
+        for _ in range(more):
+            tell("build", next(done), len(planned))
+
+    made = make_sheets([plan.wanted for plan in planned], told)
+    return tuple(_panel_sheet(plan, sheet) for plan, sheet in zip(planned, made, strict=True))
 
 
-def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, shop: ShopSettings) -> PanelSheet:
+class _Plan(NamedTuple):
+    """A panel as it is to be built."""
+
+    straight: Straightened[Panel]
+    cut: Returned
+    fixings: PanelFixings | None
+    wanted: ToBuild
+
+
+def _plan(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, shop: ShopSettings) -> _Plan:
     depth = sheet_depth(sheet.thickness, sheet.skin_side)
     shape = cut.shape.squared(depth) if sheet.ends == "square" else cut.shape
     fixings = panel_fixings(shape, sheet, shop)
-    built = build_panel(shape, sheet.thickness, sheet.skin_side, () if fixings is None else fixings.holes)
-    volume = sheet_volume(shape, sheet.thickness, sheet.skin_side) - (fixings.volume if fixings is not None else 0.0)
+    holes = () if fixings is None else fixings.holes
+    return _Plan(straight, cut, fixings, ToBuild(shape, sheet.thickness, sheet.skin_side, holes))
+
+
+def _panel_sheet(plan: _Plan, made: MadeSheet) -> PanelSheet:
+    straight, cut, fixings, (shape, thickness, skin_side, _) = plan
+    found = made.measured
+    volume = found.volume - (fixings.volume if fixings is not None else 0.0)
     notes = tuple(
         f"The cone of patch {index + 1} is so slender that it is built as a cylinder; "
         f"no corner moves by more than {straight.largest_move:.2g} mm."
@@ -162,11 +182,11 @@ def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, s
     return PanelSheet(
         shape=shape,
         fitted=straight.shape,
-        other=other_face(shape, sheet.thickness, sheet.skin_side),
-        solid=built.solid,
-        skin=built.skin,
-        check=_validation(built.solid, volume),
-        skin_check=_validation(built.skin, None),
+        other=other_face(shape, thickness, skin_side),
+        solid=made.solid,
+        skin=made.skin,
+        check=_validation(found.area, volume, found.centroid),
+        skin_check=_validation(found.skin_area, None, found.skin_centroid),
         area=shape.area(),
         volume=volume,
         fixings=fixings,
@@ -177,10 +197,7 @@ def _build(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, s
     )
 
 
-def _validation(shape: Solid | Shell, volume: float | None) -> Validation:
+def _validation(area: float, volume: float | None, centroid: Array) -> Validation:
     """Of a solid of that volume, mm3, or of an open shell."""
-    area, centroid = area_and_centroid(shape)
-    if volume is not None:
-        _, centroid = volume_and_centroid(shape)
     x, y, z = centroid.tolist()
     return Validation(area=area, volume=volume, centroid=(x, y, z))

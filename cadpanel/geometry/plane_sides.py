@@ -16,7 +16,7 @@ from cadpanel.arrays import Array
 from cadpanel.errors import PanelError
 from cadpanel.geometry.cone_sections import AxisFrame, axis_frame, lifted
 from cadpanel.geometry.curve_pieces import CurvePieces, segments
-from cadpanel.geometry.panel import Chain, CutPlane
+from cadpanel.geometry.panel import Chain, CutPlane, is_chain
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.plane_section import PlaneSection, corner_angles, plane_section
 from cadpanel.geometry.vectors import cross, unit
@@ -62,12 +62,12 @@ class SideCurve:
 
 def planes_of(shape: object) -> tuple[CutPlane | None, CutPlane | None]:
     """The planes in which a panel's sides stand that follow no ruling; of one that is no chain none does."""
-    return shape.side_planes if isinstance(shape, Chain) else (None, None)
+    return shape.side_planes if is_chain(shape) else (None, None)
 
 
 def side_curves(shape: object) -> tuple[SideCurve | None, SideCurve | None]:
     """The curves of its sides, as `side_curve` tells them; of a panel that is no chain none."""
-    return (side_curve(shape, 0), side_curve(shape, 1)) if isinstance(shape, Chain) else (None, None)
+    return (side_curve(shape, 0), side_curve(shape, 1)) if is_chain(shape) else (None, None)
 
 
 def side_curve(shape: Chain, side: int) -> SideCurve | None:

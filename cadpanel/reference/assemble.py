@@ -15,7 +15,7 @@ from cadpanel.reference.junctions import part_sides
 from cadpanel.reference.model import RawPanel, Reference
 from cadpanel.reference.near_misses import unmet_notes
 from cadpanel.reference.oriented_panel import Sheet, sheet
-from cadpanel.reference.outline import find_outline
+from cadpanel.reference.outline import Outline, find_outline
 from cadpanel.reference.overlaps import refuse_overlaps
 from cadpanel.reference.seam_finding import after_flipping, find_contacts, refuse_duplicates
 
@@ -28,7 +28,11 @@ SAME_CORNER = 1e-3
 
 
 def assemble(
-    raw_panels: Sequence[RawPanel], source: str, seam_tolerance: float = SEAM_TOLERANCE, junctions: bool = False
+    raw_panels: Sequence[RawPanel],
+    source: str,
+    seam_tolerance: float = SEAM_TOLERANCE,
+    junctions: bool = False,
+    found: Sequence[Outline] | None = None,
 ) -> Reference:
     """Return the reference that a file's panels make.
 
@@ -40,6 +44,7 @@ def assemble(
         source: the file's name, kept and used in messages.
         seam_tolerance: how far panels that meet, and faces of one panel, may lie apart, mm.
         junctions: part the sides of panels where corners of others lie on them?
+        found: the panels' outlines, where they were found with this tolerance already.
 
     Raises:
         ReferenceFileError: there are no panels.
@@ -50,7 +55,7 @@ def assemble(
         raise SettingsError(f"The seam tolerance must be a positive length in mm, not {seam_tolerance!r}.")
     if not raw_panels:
         raise ReferenceFileError(f"'{source}' holds no faces: export the faces of the skin, one product a panel.")
-    outlines = [find_outline(raw, source, seam_tolerance) for raw in raw_panels]
+    outlines = found or [find_outline(raw, source, seam_tolerance) for raw in raw_panels]
     if junctions:
         outlines = part_sides(outlines, seam_tolerance)
     sheets = [sheet(raw, outline) for raw, outline in zip(raw_panels, outlines, strict=True)]

@@ -22,7 +22,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import NamedTuple, TypeVar
 
-from cadpanel.brep.isolation.client import READER, start_reader, stop_reader
+from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind, Sheet
@@ -110,15 +110,27 @@ def _kinds(shape: Panel) -> tuple[PatchKind, ...]:
 
 
 class Took(NamedTuple):
-    """Seconds of the clock and of the processor, those of finished child processes included."""
+    """Seconds of the clock and of the processor, those of child processes included."""
 
     clock: float
     processor: float
 
 
 def now() -> Took:
-    """The clock and what the processor has done so far."""
-    return Took(time.perf_counter(), sum(os.times()[:4]))
+    """The clock and what the processor has done so far, for processes that still run, too."""
+    return Took(time.perf_counter(), sum(os.times()[:4]) + sum(map(seconds_of, children())))
+
+
+def children() -> list[int]:
+    """The processes that this one has started and that run."""
+    return [int(process) for task in Path("/proc/self/task").iterdir() for process in _started_by(task)]
+
+
+def _started_by(task: Path) -> list[str]:
+    try:
+        return (task / "children").read_text().split()
+    except OSError:  # a thread that has ended meanwhile
+        return []
 
 
 def timed(seconds: dict[str, Took], step: str, work: Callable[[], Result]) -> Result:
@@ -130,22 +142,10 @@ def timed(seconds: dict[str, Took], step: str, work: Callable[[], Result]) -> Re
     return result
 
 
-def count_interpreter(seconds: dict[str, Took], step: str, before: float) -> None:
-    """Add to a step what its second interpreter has done, which is known since it has ended.
-
-    Arguments:
-        seconds: of every step.
-        step: the interpreter's.
-        before: the processor's seconds before it ended.
-    """
-    took = seconds[step]
-    seconds[step] = took._replace(processor=took.processor + now().processor - before)
-
-
 def seconds_of(process: int) -> float:
-    """The processor's seconds of a process that runs, from what Linux tells of it."""
+    """The processor's seconds of a process that runs, and of those that it has seen end, as Linux tells of them."""
     fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return sum(map(int, fields[11:15])) / os.sysconf("SC_CLK_TCK")
 
 
 def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Took]:
@@ -157,8 +157,6 @@ def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Too
         write(Fixture(file=file.name, prefix="P", table=(), lip=strip(panels)), file)
     seconds: dict[str, Took] = {}
     reference = timed(seconds, "read", lambda: read_reference(file))
-    read = seconds_of(READER.start().pid)  # it goes on, as in a delivery
-    seconds["read"] = seconds["read"]._replace(processor=seconds["read"].processor + read)
     shapes = local_shapes(reference)
     with second_interpreter(panels) as helper:  # as a delivery does
         built = timed(seconds, "build", lambda: build_panels(shapes, SheetSettings(), reference.seams).panels)
@@ -168,12 +166,12 @@ def run(panels: int, folder: Path, outputs: Sequence[str] = ()) -> dict[str, Too
             if helper is not None:
                 helper.begin(folder / SKINS)
             write_solids(folder / PANELS, built, "strip")
+            if helper is not None:
+                helper.open(folder / PANELS)
 
         timed(seconds, "write", write_both)
         certificate = timed(seconds, "verify", lambda: prove(folder, reference, built, helper))
-        before = now().processor
         stop_reader()
-    count_interpreter(seconds, "verify", before + read)
     if not certificate.holds:
         raise SystemExit(f"the proof fails: {certificate.failures[0]}")
     bare = [(one.shape.name, one.solid) for one in built]

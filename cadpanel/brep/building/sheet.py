@@ -84,6 +84,11 @@ def build_panel(
         PanelError: if the sheet cannot be built (see `check_buildable`).
     """
     check_buildable(shape, thickness, skin_side)
+    return build_checked(shape, thickness, skin_side, holes)
+
+
+def build_checked(shape: Panel, thickness: float, skin_side: SkinSide, holes: Sequence[Hole]) -> BuiltPanel:
+    """The same of a panel that has passed `check_buildable`."""
     straightened = shape.straightened()
     own = straightened.shape
     faces = sheet_faces(own, other_face(own, thickness, skin_side))

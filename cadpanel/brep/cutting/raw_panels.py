@@ -18,11 +18,12 @@ from cadpanel.brep.files.names import unique_names
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.skin.adjacency import surfaces_of
 from cadpanel.brep.skin.face_cleanup import skin_faces
-from cadpanel.brep.skin.panel_cleanup import gap_notes, mend_panels
+from cadpanel.brep.skin.panel_cleanup import Mended, gap_notes, mend_panels
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.geometry.limits import LARGEST_COORDINATE
 from cadpanel.geometry.vectors import norm
 from cadpanel.reference.model import FaceSamples, RawPanel
+from cadpanel.reference.outline import Outline
 from cadpanel.reference.settings import ReferenceSettings
 
 # Panels sampled together: enough to share the overhead, few enough to take little memory.
@@ -37,11 +38,13 @@ class RawReference:
         panels: sampled faces, panel by panel, mm.
         notes: what was mended or moved, and what should be known of the file, one sentence each.
         origin: what was taken off all coordinates of the file, mm.
+        outlines: of the panels, where they are found already.
     """
 
     panels: tuple[RawPanel, ...]
     notes: tuple[str, ...]
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    outlines: tuple[Outline, ...] | None = None
 
 
 def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | None = None) -> RawReference:
@@ -60,8 +63,9 @@ def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | N
         PanelError: a product is a solid, holds no face, or holds one that cannot be sampled.
     """
     if isinstance(found, Products):
-        panels, mended = _mended(found.shapes, found.source, how.seam_tolerance)
-        return RawReference(panels=panels, notes=(*found.notes, *mended), origin=found.origin)
+        mended = mended_products(found.shapes, found.source, how.seam_tolerance)
+        notes = mended.notes(found.source, how.seam_tolerance)
+        return RawReference(panels=mended.panels, notes=(*found.notes, *notes), origin=found.origin)
     raw = _part_panels(found, how) if how.way is None else _cut_panels(found, how, drawn)
     return replace(raw, origin=found.origin)
 
@@ -75,8 +79,9 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
         curves = sum(not part.face_labels and not part.unreadable for part in model.parts)
         many = "1 loose curve, which is no panel" if curves == 1 else f"{curves} loose curves, which are no panels"
         notes = [f"'{model.source}' holds {many}."] if curves else []
-        panels, mended = _mended(shapes, model.source, settings.seam_tolerance)
-        return RawReference(panels=panels, notes=(*model.notes, *notes, *mended))
+        whole = mended_products(shapes, model.source, settings.seam_tolerance)
+        notes += whole.notes(model.source, settings.seam_tolerance)
+        return RawReference(panels=whole.panels, notes=(*model.notes, *notes))
     chosen, mended = skin_faces(
         select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
     )
@@ -118,10 +123,13 @@ def require_reach(faces: Sequence[FaceSamples], source: str) -> None:
         )
 
 
-def _mended(
-    products: Sequence[NamedShape], source: str, tolerance: float
-) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
-    """Sample panels as the file has them, and mend what can be; with notes."""
+def mended_products(products: Sequence[NamedShape], source: str, tolerance: float) -> Mended:
+    """Sample panels as a file has them, and mend what can be.
+
+    Raises:
+        ReferenceFileError: they hold no faces, or reach too far.
+        PanelError: one is a solid, holds no face, or holds one that cannot be sampled.
+    """
     panels = _sampled(products, source)
     require_reach([face for panel in panels for face in panel.faces], source)
     return mend_panels(panels, [product.shape for product in products], source, tolerance)

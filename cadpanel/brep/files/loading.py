@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
@@ -19,7 +20,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from cadpanel.brep.faces.sampling import sample_faces
 from cadpanel.brep.files.catalogue import checked_format_of
 from cadpanel.brep.files.format import Format
-from cadpanel.brep.files.model import Model, Part, Products
+from cadpanel.brep.files.model import Model, NamedShape, Part, Products
 from cadpanel.brep.files.step import STEP, read_products
 from cadpanel.brep.files.units import refuse_given
 from cadpanel.brep.kernel.placement import placed
@@ -79,7 +80,7 @@ def _load(
     beside_unitless: bool = False,
 ) -> Model:
     model = form.read(path, millimetres)
-    shapes = _placed([part.shape for part in model.parts], path.name)
+    shapes = placed_together([part.shape for part in model.parts], path.name)
     model = replace(
         model, parts=tuple(replace(part, shape=shape) for part, shape in zip(model.parts, shapes, strict=True))
     )
@@ -95,7 +96,7 @@ def _load(
     return _near_origin(model) if near_origin else model
 
 
-def _placed(shapes: Sequence[TopoDS_Shape], source: str) -> list[TopoDS_Shape]:
+def placed_together(shapes: Sequence[TopoDS_Shape], source: str) -> list[TopoDS_Shape]:
     """The shapes of a file without locations, all at once: what they share stays shared."""
     try:
         return list(children(placed(compound_of(shapes))))
@@ -156,7 +157,7 @@ def _left_out(model: Model) -> list[str]:
 
 def _load_products(path: Path, millimetres: float | None) -> Products:
     found = read_products(path, millimetres)
-    placed_shapes = _placed([product.shape for product in found.shapes], path.name)
+    placed_shapes = placed_together([product.shape for product in found.shapes], path.name)
     named = zip(found.shapes, placed_shapes, strict=True)
     found = replace(found, shapes=tuple(replace(product, shape=shape) for product, shape in named))
     if found.unit is not None and millimetres is not None:
@@ -164,9 +165,14 @@ def _load_products(path: Path, millimetres: float | None) -> Products:
     origin = far_origin([product.shape for product in found.shapes], path.name)
     if origin is None:
         return found
+    notes = (*found.notes, origin_note(path.name, origin))
+    return replace(found, shapes=moved_back(found.shapes, origin), notes=notes, origin=origin)
+
+
+def moved_back(shapes: Sequence[NamedShape], origin: tuple[float, float, float]) -> tuple[NamedShape, ...]:
+    """Shapes whose origin is to lie at a point."""
     back = (-origin[0], -origin[1], -origin[2])
-    shapes = tuple(replace(product, shape=shifted(product.shape, back)) for product in found.shapes)
-    return replace(found, shapes=shapes, notes=(*found.notes, origin_note(path.name, origin)), origin=origin)
+    return tuple(replace(product, shape=shifted(product.shape, back)) for product in shapes)
 
 
 def _near_origin(model: Model) -> Model:
@@ -179,11 +185,27 @@ def _near_origin(model: Model) -> Model:
     return replace(model, parts=parts, origin=origin).with_notes([origin_note(model.source, origin)])
 
 
-def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] | None:
+def far_origin(shapes: Sequence[TopoDS_Shape], source: str) -> tuple[float, float, float] | None:
     """The point, in whole metres, that should become the origin of shapes far from it; None where it may stay.
 
     Raises:
         ReferenceFileError: they lie where no double can hold a millimetre.
+    """
+    return origin_within([extent_of(shapes, source)], source)
+
+
+class Extent(NamedTuple):
+    """A box around shapes: its lower and its upper corner, mm, and by how much it is wider on every side."""
+
+    bounds: tuple[float, ...]
+    gap: float
+
+
+def extent_of(shapes: Sequence[TopoDS_Shape], source: str) -> Extent | None:
+    """The box around shapes; None around nothing.
+
+    Raises:
+        ReferenceFileError: the kernel cannot measure one of them.
     """
     box = Bnd_Box()
     try:
@@ -194,13 +216,29 @@ def far_origin(shapes: list[object], source: str) -> tuple[float, float, float] 
         ) from error
     if box.IsVoid():
         return None
-    bounds = np.array(box.Get())
-    if not np.isfinite(bounds).all() or np.abs(bounds).max() > LARGEST_COORDINATE:
+    gap = float(box.GetGap())
+    box.SetGap(0.0)
+    return Extent(box.Get(), gap)
+
+
+def origin_within(extents: Sequence[Extent | None], source: str) -> tuple[float, float, float] | None:
+    """The origin that shapes in some boxes should have; None where it may stay where it is.
+
+    Raises:
+        ReferenceFileError: they lie where no double can hold a millimetre.
+    """
+    known = [extent for extent in extents if extent is not None]
+    if not known:
+        return None
+    corners, gap = np.array([extent.bounds for extent in known]), max(extent.gap for extent in known)
+    low, high = corners[:, :3].min(axis=0) - gap, corners[:, 3:].max(axis=0) + gap
+    reach = float(np.abs([low, high]).max())
+    if not np.isfinite(reach) or reach > LARGEST_COORDINATE:
         raise ReferenceFileError(
-            f"'{source}' reaches {np.abs(bounds).max():.3g} mm from the origin, farther than millimetres can be told "
+            f"'{source}' reaches {reach:.3g} mm from the origin, farther than millimetres can be told "
             "apart: look for a stray shape or a wrong unit."
         )
-    middle, half = 0.5 * (bounds[:3] + bounds[3:]), 0.5 * (bounds[3:] - bounds[:3])
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
     if np.linalg.norm(middle) < FAR and not np.linalg.norm(half) <= FAR < np.linalg.norm(np.abs(middle) + half):
         return None
     x, y, z = (np.round(middle / WHOLE_METRE) * WHOLE_METRE + 0.0).tolist()  # a note that says -0 makes one wonder

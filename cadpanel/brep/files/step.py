@@ -61,6 +61,21 @@ def read_products(path: Path, millimetres: float | None = None) -> Products:
     return Products(source=path.name, shapes=shapes, unit=read.unit, notes=tuple(notes))
 
 
+def read_plain_products(path: Path, count: int) -> tuple[tuple[Part, ...], str] | None:
+    """The products of a file that holds so many, each of which may be a panel, and the file's unit of length.
+
+    Returns:
+        None where they are others, or anything must be said of the file.
+
+    Raises:
+        ReferenceFileError: the kernel cannot read it.
+    """
+    read = _parts(path, None, labels=False)
+    if read.lost or read.unit is None or len(read.parts) != count:
+        return None
+    return read.parts, read.unit
+
+
 def _read(path: Path, millimetres: float | None) -> Model:
     read = _parts(path, millimetres, labels=True)
     parts = _with_lost(read)

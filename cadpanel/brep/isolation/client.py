@@ -136,6 +136,12 @@ class Interpreter:
         if process is not None:
             process.kill()
 
+    def interrupt(self) -> None:
+        """End the interpreter at once, whoever waits for its answer; the next request starts a new one."""
+        process = self._process
+        if process is not None:
+            process.kill()
+
     def _end(self) -> None:
         process, self._process = self._process, None
         if process is not None:

@@ -120,7 +120,20 @@ class Helper:
     def __init__(self, interpreter: Interpreter) -> None:
         self._interpreter = interpreter
         self._clerk = ThreadPoolExecutor(max_workers=1)
+        self._reader = ThreadPoolExecutor(max_workers=1)
         self._begun: tuple[Path, Future[list[ShapeFacts]]] | None = None
+        self._opened: tuple[Path, Future[int]] | None = None
+
+    def open(self, panels: Path) -> Future[int]:
+        """Let the guarded interpreter read the file of panels, from now on."""
+        if self._opened is None or self._opened[0] != panels:
+            self._opened = panels, self._reader.submit(_File(READER, panels).open)
+        return self._opened[1]
+
+    def take_opened(self, panels: Path) -> Future[int]:
+        """The same for who inspects it now: whoever asks again has it read again."""
+        opened, self._opened = self.open(panels), None
+        return opened
 
     def begin(self, skins: Path) -> Future[list[ShapeFacts]]:
         """Let it read and inspect the file of skins, from now on."""
@@ -137,8 +150,11 @@ class Helper:
         return self._clerk.submit(_File(self._interpreter, panels).rebuilt, sheets, told)
 
     def end(self) -> None:
-        """End it at once."""
+        """End it at once, and what the other one reads for nobody any more."""
+        if self._opened is not None and not self._opened[1].done():
+            READER.interrupt()
         self._interpreter.kill()
+        self._reader.shutdown(cancel_futures=True)
         self._clerk.shutdown(cancel_futures=True)
         self._interpreter.stop()
 
@@ -224,9 +240,9 @@ def _inspect_together(
     panels: Path, skins: Path, helper: Helper, told: Told
 ) -> tuple[list[ShapeFacts], list[ShapeFacts]]:
     work = _Work(told)
-    of_skins, helped = helper.begin(skins), helper.join(panels, work)
+    opened, of_skins, helped = helper.take_opened(panels), helper.begin(skins), helper.join(panels, work)
     try:
-        work.do(_File(READER, panels))
+        work.do(_File(READER, panels), opened.result())
     finally:
         work.end()
     found = of_skins.result()
@@ -244,9 +260,9 @@ class _Work:
         self._ready: queue.SimpleQueue[Chunk | None] = queue.SimpleQueue()
         self._helped = threading.Event()
 
-    def do(self, file: _File) -> None:
-        """Read the file and inspect what it holds, or have it packed for the helper once that one has time."""
-        waiting = deque(range(file.open()))
+    def do(self, file: _File, shapes: int) -> None:
+        """Inspect so many shapes that the file holds, or have them packed for the helper once that one has time."""
+        waiting = deque(range(shapes))
         while waiting:
             count = min(CHUNK, len(waiting))
             if self._helped.is_set() and self._ready.qsize() < AHEAD:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.TopoDS import TopoDS_Shape
@@ -17,9 +17,44 @@ from cadpanel.reference.model import RawPanel
 from cadpanel.reference.outline import bridged_gap
 
 
-def mend_panels(
-    panels: Sequence[RawPanel], shapes: Sequence[TopoDS_Shape], source: str, tolerance: float
-) -> tuple[tuple[RawPanel, ...], tuple[str, ...]]:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mended:
+    """Panels as they are taken, and what was found in them, in their order.
+
+    Attributes:
+        panels: none of them empty.
+        hairs, doubled, creased: a sentence without its stop on each face that has no width, lies on another one of its
+            panel, or has a crease inside.
+        gaps: how far the faces of each panel gape, mm.
+    """
+
+    panels: tuple[RawPanel, ...]
+    hairs: tuple[str, ...] = ()
+    doubled: tuple[str, ...] = ()
+    creased: tuple[str, ...] = ()
+    gaps: tuple[float, ...] = ()
+
+    def followed_by(self, other: Mended) -> Mended:
+        """These panels and others, as if they had been mended together."""
+        return Mended(
+            panels=(*self.panels, *other.panels),
+            hairs=(*self.hairs, *other.hairs),
+            doubled=(*self.doubled, *other.doubled),
+            creased=(*self.creased, *other.creased),
+            gaps=(*self.gaps, *other.gaps),
+        )
+
+    def notes(self, source: str, tolerance: float) -> tuple[str, ...]:
+        """A note on each kind of thing that was found in the panels of a file."""
+        return (
+            *_first_of(self.hairs),
+            *_first_of(self.doubled),
+            *_gaping(self.gaps, [panel.name for panel in self.panels], source, tolerance),
+            *_first_of(self.creased),
+        )
+
+
+def mend_panels(panels: Sequence[RawPanel], shapes: Sequence[TopoDS_Shape], source: str, tolerance: float) -> Mended:
     """Leave out faces of panels that have no width or lie on another one of their panel; look for gaps and creases.
 
     Args:
@@ -27,9 +62,6 @@ def mend_panels(
         shapes: theirs, in the same order.
         source: the file's name.
         tolerance: within which a face lies on another one, and gaps between faces are bridged, mm.
-
-    Returns:
-        The panels, none of them empty, and a note on each kind of thing that was found.
     """
     mended, hairs, doubled, creased = [], [], [], []
     for panel, shape in zip(panels, shapes, strict=True):
@@ -54,11 +86,12 @@ def mend_panels(
             "left out"
             for second, first in sorted(doubles.items())
         ]
-    return tuple(mended), (
-        *_first_of(hairs),
-        *_first_of(doubled),
-        *gap_notes(mended, source, tolerance),
-        *_first_of(creased),
+    return Mended(
+        panels=tuple(mended),
+        hairs=tuple(hairs),
+        doubled=tuple(doubled),
+        creased=tuple(creased),
+        gaps=_gaps(mended, tolerance),
     )
 
 
@@ -82,7 +115,15 @@ def gap_notes(panels: Sequence[RawPanel], source: str, tolerance: float) -> tupl
         source: the file's name.
         tolerance: up to which gaps are bridged, mm.
     """
-    gaping = [(gap, panel.name) for panel in panels if (gap := bridged_gap(panel, tolerance)) > WORTH_A_NOTE]
+    return _gaping(_gaps(panels, tolerance), [panel.name for panel in panels], source, tolerance)
+
+
+def _gaps(panels: Sequence[RawPanel], tolerance: float) -> tuple[float, ...]:
+    return tuple(bridged_gap(panel, tolerance) for panel in panels)
+
+
+def _gaping(gaps: Sequence[float], names: Sequence[str], source: str, tolerance: float) -> tuple[str, ...]:
+    gaping = [found for found in zip(gaps, names, strict=True) if found[0] > WORTH_A_NOTE]
     if not gaping:
         return ()
     gap, name = max(gaping, key=lambda found: found[0])

@@ -100,7 +100,7 @@ def _write_whole(target: Path, write: Callable[[IO[str]], None]) -> None:
             "w", encoding="ascii", newline="\n", dir=target.parent, prefix=f".{target.name}.", delete=False
         ) as file:
             temporary = Path(file.name)
-            write(file)
+            write(file.file)  # itself: what stands around it takes a fifth of the time of writing
             file.flush()
             os.fsync(file.fileno())
         temporary.chmod(0o666 & ~_umask())

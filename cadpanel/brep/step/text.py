@@ -47,14 +47,14 @@ class StepText:
     """
 
     def __init__(self, file: IO[str]) -> None:
-        self._file = file
+        self._write = file.write
         self._last = 0
         self._shared: dict[tuple[str, tuple[float, ...]], int] = {}
 
     def add(self, entity: str) -> int:
         """Add an instance, for example "VECTOR('',#4,1.)", and return its number."""
         self._last += 1
-        self._file.write(f"#{self._last}={entity};\n")
+        self._write(f"#{self._last}={entity};\n")
         return self._last
 
     def shared(self, kind: str, numbers: tuple[float, ...]) -> int:

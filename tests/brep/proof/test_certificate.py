@@ -218,14 +218,22 @@ def test_an_interpreter_that_dies_over_a_file_is_one_sentence(delivery, forks, m
     assert delivery.certify().holds
 
 
+# One that takes minutes to read any file.
+SLOW = """
+import time
+from cadpanel.brep import server
+from cadpanel.brep.proof import inspection
+
+inspection.open_step = lambda path, **how: time.sleep(600.0)
+server.main()
+"""
+
+
 class Told:
     """A file whose shapes are numbers, and their facts, too; notes who was asked for what."""
 
     def __init__(self, count, helped=None):
         self.count, self.helped, self.asked = count, helped, []
-
-    def open(self):
-        return self.count
 
     def facts(self, places):
         self.asked += places
@@ -244,7 +252,7 @@ def test_the_shapes_of_a_file_are_each_inspected_once_by_one_of_two(count):
     work: Any = parallel._Work(parallel.unheard)
     own, other = Told(count, threading.Event()), Told(count)
     work._helped.set()
-    work.do(own)
+    work.do(own, own.count)
     work.end()
     assert own.helped.is_set()
     work.help(other)
@@ -256,7 +264,7 @@ def test_the_shapes_of_a_file_are_each_inspected_once_by_one_of_two(count):
 def test_a_file_is_inspected_alone_where_the_helper_never_has_time():
     work: Any = parallel._Work(parallel.unheard)
     own = Told(100, threading.Event())
-    work.do(own)
+    work.do(own, own.count)
     assert own.asked == list(range(100))
 
 
@@ -285,3 +293,29 @@ def test_a_file_cut_short_cannot_be_certified(delivery, file, monkeypatch):
     path.write_text(path.read_text()[:5000])
     with pytest.raises(DeliveryError, match="cannot be read"):
         delivery.certify()
+
+
+def test_files_that_are_read_ahead_give_the_same_and_are_read_again_for_who_asks_again(delivery, monkeypatch):
+    alone = delivery.certify()
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
+        assert helper is not None
+        helper.open(delivery.panels_step)
+        assert delivery.certify(helper=helper) == alone
+        del delivery.solids["P1"]
+        delivery.write()
+        assert not delivery.certify(helper=helper).holds
+
+
+def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monkeypatch):
+    client.stop_reader()
+    monkeypatch.setattr(client, "interpreter", lambda _: forks(SLOW))
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
+        assert helper is not None
+        opened = helper.open(delivery.panels_step)
+    with pytest.raises(DeliveryError):
+        opened.result()
+    client.stop_reader()
+    monkeypatch.undo()
+    assert delivery.certify().holds

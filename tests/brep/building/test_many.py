@@ -6,7 +6,7 @@ import pytest
 from cadpanel.brep.building import many
 from cadpanel.brep.building.many import Measured, ToBuild, make_sheets, measure_sheets
 from cadpanel.brep.isolation.client import READER
-from cadpanel.brep.kernel.shapes import brep_text
+from cadpanel.brep.kernel.kept import kept_binary
 from cadpanel.errors import DeliveryError, PanelError
 from cadpanel.features.catalogue import feature
 from tests.instances import random_shapes
@@ -41,8 +41,8 @@ def test_with_and_without_help_the_same_sheets_come_in_their_order(monkeypatch):
     alone = make_sheets(sheets, told.append)
     assert numbers(one.measured for one in helped) == numbers(one.measured for one in alone)
     for one, other in zip(helped, alone, strict=True):
-        assert brep_text(one.solid) == brep_text(other.solid)
-        assert brep_text(one.skin) == brep_text(other.skin)
+        assert kept_binary(one.solid) == kept_binary(other.solid)
+        assert kept_binary(one.skin) == kept_binary(other.skin)
 
 
 @pytest.mark.parametrize("places", [(0,), (6,), (2, 6), (5, 6)])

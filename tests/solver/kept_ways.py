@@ -19,9 +19,11 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.solver.ended import Limits
+from cadpanel.solver.giving_way import hold_or_give_way
 from cadpanel.solver.held_model import Point
 from cadpanel.solver.hold import Hold
 from cadpanel.solver.interior_point import interior_point
+from cadpanel.solver.stop import Stop
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points
 
 # Rounding grows along a way; so far it is nothing.
@@ -60,13 +62,17 @@ class CurvedTargets(HeldTargets):
 
 @dataclass(frozen=True)
 class Way:
-    """A model, and how it is solved: see `interior_point`; `again` from its end, with distances a little narrower."""
+    """A model, and how it is solved: see `interior_point`; `again` from its end, with distances a little narrower.
+
+    With a `search` it is what gives way that is looked for, for so much of cost and in so many steps at most.
+    """
 
     model: HeldTargets
     limits: Limits = field(default_factory=lambda: Limits(steps=STEPS))
     ease: float = 1.0
     asked: float = 1.0
     again: bool = False
+    search: tuple[float, int] | None = None
 
 
 def models() -> dict[str, Way]:
@@ -100,6 +106,11 @@ def models() -> dict[str, Way]:
         "a chain too short, patiently": Way(_torn(), patient),
         "a chain too short, widened": Way(_torn(), ease=4.0, asked=0.5),
         "a chain once more": Way(chain, Limits(steps=STEPS, feasibility=0.02, least_cost=0.1), again=True),
+        "a point costs too much": Way(_far_off(), search=(0.5, 999)),
+        "a point costs too much until told": Way(_far_off(), search=(0.5, 60)),
+        "a point between two": Way(_between(gives_way=True), search=(np.inf, 999)),
+        "a point beside one that must hold until told": Way(_between(gives_way=False), search=(np.inf, 70)),
+        "a chain too short is told early": Way(_torn(), search=(np.inf, 4)),
         "a curved valley": Way(valley),
         "a curved valley from far away": Way(both, Limits(steps=2 * STEPS, patience=2)),
     }
@@ -111,6 +122,23 @@ def _torn() -> HeldTargets:
     ends = Hold(np.array([[0.5], [0.5]]), weight=0.1)
     torn.held += (HeldBatch(ends, np.array([[[-3.0, 0.0]], [[3.0, 0.0]]]), (np.array([0, 2]),)),)
     return torn
+
+
+def _far_off() -> HeldTargets:
+    """A point held within 1 of where it does not want to be, and one by itself that holds."""
+    return held_points(np.array([[3.0, 0.0], [0.0, 0.5]]), np.zeros((2, 2)), np.array([1.0, 2.0]))
+
+
+def _between(*, gives_way: bool) -> HeldTargets:
+    """A point that is to be near two others at once, which are further apart; the second may have to hold."""
+    one, other = (np.array([[[side, 0.0]]]) for side in (-1.0, 1.2))
+    holds = [Hold(np.array([[0.5]]), weight=0.0, gives_way=how) for how in (True, gives_way)]
+    model = HeldTargets(
+        np.array([[0.1, 0.3]]),
+        [HeldBatch(hold, at, (np.arange(1),)) for hold, at in zip(holds, (one, other), strict=True)],
+    )
+    model.lengths = np.full(1, 2.0)
+    return model
 
 
 def ways() -> dict[str, list[list[float]]]:
@@ -128,9 +156,25 @@ def ways() -> dict[str, list[list[float]]]:
             after = replace(interior_point(model, start, Limits()), damping=np.full(1, 8.0))
             start = after.best.unknowns
             model.held[0].hold.tighten(np.full(len(start) - 1, 0.9))
+        if way.search is not None:
+            found[name] = _searched(model, way.limits, *way.search)
+            continue
         interior_point(model, start, way.limits, ease=way.ease, asked=way.asked, after=after, tell=tell)
         found[name] = told
     return found
+
+
+def _searched(model: HeldTargets, limits: Limits, most_cost: float, steps: int) -> list[list[float]]:
+    """The largest excess and the cost after every tenth step, and in the end, after so many steps."""
+    told: list[list[float]] = []
+
+    def tell(_step: int, excess: float, cost: Array) -> bool:
+        told.append([excess, float(cost.sum())])
+        return len(told) < steps
+
+    end = hold_or_give_way(model, model.targets.copy(), limits, most_cost=most_cost, tell=tell)
+    excess = [[float(one), float(end.stopped[0] is Stop.HELD)] for one in end.excess]
+    return [*told[9::10], *excess, [float(end.iterations), model.free_cost(end.unknowns)]]
 
 
 def farthest(now: dict[str, list[list[float]]], kept: dict[str, list[list[float]]]) -> float:

@@ -108,7 +108,7 @@ def models() -> dict[str, Way]:
         "a chain once more": Way(chain, Limits(steps=STEPS, feasibility=0.02, least_cost=0.1), again=True),
         "a point costs too much": Way(_far_off(), search=(0.5, 999)),
         "a point costs too much until told": Way(_far_off(), search=(0.5, 60)),
-        "a point between two": Way(_between(gives_way=True), search=(np.inf, 999)),
+        "a point between two until told": Way(_between(gives_way=True), search=(np.inf, 120)),
         "a point beside one that must hold until told": Way(_between(gives_way=False), search=(np.inf, 70)),
         "a chain too short is told early": Way(_torn(), search=(np.inf, 4)),
         "a curved valley": Way(valley),

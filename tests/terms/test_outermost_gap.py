@@ -32,7 +32,8 @@ def test_a_seam_runs_between_both_panels_edges_also_where_these_run_against_each
         for row, panels in enumerate(batch.panels.tolist()):
             for place, (at, beside) in enumerate(((0, 1), (-1, -2))):
                 ends, nexts = batch.corners[row, :, at], batch.corners[row, :, beside]
-                way = sum(unit(corners[p, b] - corners[p, a]) for p, a, b in zip(panels, ends, nexts, strict=True))
+                pieces = [unit(corners[p, b] - corners[p, a]) for p, a, b in zip(panels, ends, nexts, strict=True)]
+                way = np.sum(pieces, axis=0)
                 normals = [axes[p] @ state.normals.position[p, a] for p, a in zip(panels, ends, strict=True)]
                 out = unit(np.sum(normals, axis=0))
                 along = unit(way - dot(way, out) * out)

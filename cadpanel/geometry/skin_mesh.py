@@ -32,7 +32,8 @@ class SkinMesh:
     Attributes:
         points: (v, 3) on the skin, mm.
         triangles: (f, 3) counterclockwise seen from outside.
-        chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths.
+        chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths,
+            and triangles run counterclockwise on it, too.
         ways: (v, 2, 3) unit vectors in the skin along the chart's two axes.
         patches: (f,) the patch to which each triangle belongs, by its place among the panel's.
     """

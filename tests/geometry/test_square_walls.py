@@ -127,3 +127,9 @@ def test_where_an_outline_hardly_turns_both_walls_stand_back_as_the_one_that_lea
     first, second = 5.0 * (outer + 0.2), 5.0 * (0.6 - outer)
     assert shape.squared(-10.0).outline[:3, 1] == pytest.approx([first, max(first, second), second], abs=1e-6)
     assert shape.squared(10.0).outline == pytest.approx(outline, abs=LENGTH)
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_the_corners_of_the_other_face_lie_along_the_normals_of_the_skin(depth: float) -> None:
+    square = random_panel(3, chain="cone").squared(depth)
+    assert square.offset(depth).corners() == pytest.approx(square.corners() + depth * square.normals, abs=LENGTH)

@@ -12,6 +12,8 @@ from cadpanel.geometry.returns import ReturnRule
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, sheet_depth
 from cadpanel.geometry.skin_mesh import skin_mesh
 from cadpanel.geometry.trays import foldable_edges, folded_tray, is_flat
+from cadpanel.geometry.unroll import unroll
+from cadpanel.geometry.unroll_trays import of_corner
 from tests.shapes import random_panel
 from tests.trays import RULE, THICKNESS, flat, tray
 
@@ -135,3 +137,21 @@ def test_a_plane_with_two_ends_is_folded_like_a_polygon_with_the_same_corners() 
     )
     assert of_chain.vertices() == pytest.approx(of_polygon.vertices(), abs=1e-6)
     assert of_chain.area() == pytest.approx(of_polygon.area())
+
+
+def test_the_thinnest_sheets_have_reliefs_as_wide_as_they_are_thick() -> None:
+    thin, rule = 0.1, ReturnRule(length=30.0, inner_radius=2.5)
+    panel = flat((0.0,) * 4)
+    shape = folded_tray(panel, foldable_edges(panel, rule, thin, "outer")[0], rule, thin, "outer")
+    assert shape.plan.reliefs == pytest.approx(thin)
+    assert shape.plan.wall_kinds.count("cylinder") == 4
+    assert len(shape.vertices()) == 8 + 8 + 8
+    assert [edge for edge in unroll(shape).edges if of_corner(edge)].count("corner 0") == 1 + 2 + 2
+    reliefs = 0.5 * thin**2 * 4.0 * np.sin(shape.plan.openings / 4.0)
+    mesh = skin_mesh(shape)
+    of_flat = mesh.triangles[mesh.patches == 0]
+    first, second, third = (mesh.points[of_flat[:, corner]] for corner in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(second - first, third - first), axis=-1).sum()
+    x, y = shape.plan.corners - shape.plan.corners[0], np.roll(shape.plan.corners, -1, axis=0) - shape.plan.corners[0]
+    whole = 0.5 * np.linalg.norm(np.cross(x, y).sum(axis=0))
+    assert whole - area == pytest.approx(reliefs.sum(), rel=1e-4)

@@ -255,7 +255,8 @@ def test_what_was_widened_holds_where_it_would_without(excess, ease, holds):
 def test_what_came_much_nearer_is_gone_on_with_and_what_hardly_did_not_is_not_asked_again(monkeypatch):
     """From 10 it tries 10 / 1.7; what comes to 7.6 without holding goes on from there, what comes to 9.8 does not."""
     for excess, following in ((1.3, 1.3 / 1.7 * 10.0 / 1.7), (1.66, np.sqrt(1.66) * 10.0 / 1.7)):
-        search, trials = searching(), []
+        search = searching()
+        trials: list[float] = []
 
         def steps(_start, trial, *_, trials=trials, excess=excess, search=search):
             trials.append(float(trial[0]))

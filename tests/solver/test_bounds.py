@@ -98,6 +98,7 @@ def test_only_steps_that_lead_beyond_a_bound_are_beyond_it_however_short():
         for step, beyond in ((way * 1e-9, True), (0.0, False), (-way * 1e-9, False), (-way * 0.2, False)):
             assert bounds.beyond(unknowns, np.full((1, 3), step)).tolist() == [[beyond, beyond, False]]
         assert bounds.blocked(unknowns, np.full((1, 3), -way * 1e-9)).tolist() == [[True, True, False]]
+        assert not bounds.blocked(unknowns, np.full((1, 3), way * 1e-9)).any()
 
 
 def test_a_step_is_cut_at_the_bound_that_it_leads_to_and_not_at_the_opposite_one():

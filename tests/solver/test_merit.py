@@ -54,7 +54,7 @@ def test_of_a_step_that_fails_as_a_whole_what_helped_is_kept_and_what_harmed_is_
     """Of a chain of eight the first goes a little nearer to where it wants to be, the last far away, the others not."""
     model = held_chain(np.zeros((8, 2)), 5.0)
     blocks, start, step = Components.of(model.pattern), np.zeros((8, 2)), np.zeros((8, 2))
-    start[0], step[0], step[7] = [0.4, 0.0], [-0.25, 0.0], [3.0, 0.0]
+    start[0], step[0], step[7] = [-0.4, 0.0], [0.25, 0.0], [3.0, 0.0]
     held = HeldRows.of_batches(model.held, model.at(start).vectors, 8, 7)
     merit = Merit(model, blocks, held)
     barriers = Barriers(held, most=1.0, ease=1.0)
@@ -70,7 +70,7 @@ def test_of_a_step_that_fails_as_a_whole_what_helped_is_kept_and_what_harmed_is_
     )
     assert found.failed.tolist() == [True]
     assert found.blocks.tolist() == [True] * 3 + [False] * 5
-    assert found.place.point.unknowns[[0, 7], 0] == pytest.approx([0.15, 0.0], abs=1e-15)
+    assert found.place.point.unknowns[[0, 7], 0] == pytest.approx([-0.15, 0.0], abs=1e-15)
 
 
 @pytest.mark.parametrize(("start", "promised", "least"), [(TARGETS, 0.0, 0.0), (CENTRES, 0.01, 0.02)])

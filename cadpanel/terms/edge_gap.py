@@ -48,7 +48,7 @@ class _Side:
     Attributes:
         own, other: (s,) the panel that the points belong to, and the other one.
         end: (s,) the other panel's edge.
-        corners: (s, 2) where that begins and ends.
+        corners: (s, m) its corners that meet others; of a straight one where it begins and ends.
         straight: whether it is straight.
         places: see `terms.seams.Movers`.
         share: (q,) see there; None where every point is the first of both.
@@ -123,7 +123,7 @@ class MixedGap(HeldTerm):
             points = self._movers[side].places.shape[1]
             frames = np.tile([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]], (len(self.seams.panels), points, 1, 1))
             if self.seams.straight(1 - side):
-                other, corners = self.seams.panels[:, 1 - side, None], self.seams.corners[:, 1 - side][:, [0, -1]]
+                other, corners = self.seams.panels[:, 1 - side, None], self.seams.corners[:, 1 - side]
                 tangents = tangents_at(state.corners.position[other, corners])
                 of_ends = seam_frames(tangents, state.normals.position[other, corners])
                 frames[:] = of_ends[:, :1, : self.parts]
@@ -144,7 +144,7 @@ class MixedGap(HeldTerm):
             own=seams.panels[:, side],
             other=seams.panels[:, 1 - side],
             end=seams.edges[:, 1 - side],
-            corners=seams.corners[:, 1 - side][:, [0, -1]],
+            corners=seams.corners[:, 1 - side],
             straight=seams.straight(1 - side),
             places=moving.places,
             share=moving.share if moving.share.any() else None,

@@ -40,15 +40,16 @@ class OutermostGap(CornerGap):
     def frames(self, state: State) -> Array:
         """(seams, 2, parts, 3) the directions of the gap's parts.
 
-        An edge begins along a straight piece, or along an arc, which bends out of the skin's tangent plane only.
+        An edge begins along a straight piece, or along an arc, which bends out of the skin's tangent plane only. At
+        either end the seam is seen from there inwards.
         """
-        normals, tangents = np.zeros(1), np.zeros(1)
+        normals, tangents = [], []
         for side in (0, 1):
             panels, corners = self.seams.panels[:, side], self.seams.corners[:, side]
             axes = np.swapaxes(self.place.axes[panels], 1, 2)
             at = state.corners.position[panels[:, None]]
             rows = np.arange(len(panels))[:, None]
             inwards = at[rows, 0, self._beside[:, side]] - at[rows, 0, corners]
-            tangents = tangents + unit(inwards * np.array([[1.0], [-1.0]])) @ axes
-            normals = normals + state.normals.position[panels[:, None], corners] @ axes
-        return seam_frames(tangents, normals)
+            tangents.append(unit(inwards) @ axes)
+            normals.append(state.normals.position[panels[:, None], corners] @ axes)
+        return seam_frames(np.sum(tangents, axis=0), np.sum(normals, axis=0))

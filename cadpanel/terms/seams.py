@@ -149,7 +149,8 @@ def movers(layout: Layout, batch: SeamBatch, side: int) -> Movers:
 
 def _places(edge: Edge, corner_count: int) -> list[tuple[int, int]]:
     if edge.straight:
-        return [(edge.corners[0], edge.corners[-1])] * len(_STRAIGHT_SHARES)
+        first, last = edge.corners
+        return [(first, last)] * len(_STRAIGHT_SHARES)
     return [(c, c) for c in edge.corners[1:-1]] + [(corner_count + a, corner_count + a) for a in edge.arcs]
 
 

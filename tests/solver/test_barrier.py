@@ -164,3 +164,15 @@ def test_who_goes_on_with_narrower_distances_pulls_as_hard():
     after = Barriers(numbers.held, most=1.0, ease=1.0)
     after.resume(numbers)
     assert np.array_equal(after.weight, numbers.weight)
+
+
+def test_distances_that_may_give_way_begin_wider_and_multipliers_halfway():
+    """A multiplier counts |v|^2 / tau^2, and in the cost |v|^2 / 2."""
+    _, batch, at = case(10)
+    hard = HeldBatch(Hold(np.full((2, 2), 3.0), weight=0.0), batch.offset, batch.blocks, batch.pair)
+    held = HeldRows.of_batches([batch, hard], [batch.vectors(at)] * 2, 3, 2)
+    barrier = Barriers(held, most=MOST, ease=4.0)
+    assert barrier.goal == pytest.approx([*(4.0 * batch.hold.radius).reshape(-1), *[3.0] * 4])
+    assert barrier.tau.tolist() == barrier.goal.tolist()
+    assert barrier.weight.tolist() == [0.5 * MOST] * 8
+    assert barrier.multipliers[1] == pytest.approx(np.full((2, 2), 0.5 * MOST / 9.0))

@@ -89,3 +89,24 @@ def test_a_matrix_that_is_not_positive_definite_gives_no_step():
     normal, _, coupled = random_model(3)
     normal.diagonal[1] *= -1.0
     assert bounded_step(coupled, normal, np.zeros((4, 3)), np.zeros((4, 3)), None) is None
+
+
+def test_only_steps_that_lead_beyond_a_bound_are_beyond_it_however_short():
+    bounds = Bounds(np.zeros((1, 3)), np.ones((1, 3)))
+    for at, way in ((0.0, -1.0), (1.0, 1.0)):
+        unknowns = np.array([[at, at, 0.5]])
+        for step, beyond in ((way * 1e-9, True), (0.0, False), (-way * 1e-9, False), (-way * 0.2, False)):
+            assert bounds.beyond(unknowns, np.full((1, 3), step)).tolist() == [[beyond, beyond, False]]
+        assert bounds.blocked(unknowns, np.full((1, 3), -way * 1e-9)).tolist() == [[True, True, False]]
+        assert not bounds.blocked(unknowns, np.full((1, 3), way * 1e-9)).any()
+
+
+def test_a_step_is_cut_at_the_bound_that_it_leads_to_and_not_at_the_opposite_one():
+    """Each block by itself: one is cut, one is not, one stands on a bound and stays."""
+    normal = Normal(np.array([[-3.0], [-0.5], [1.0]]), np.ones((3, 1, 1)), np.zeros((0, 1, 1)))
+    alone, at = pattern(3, 1, []), np.zeros((3, 1))
+    for lower in (-9.0, np.array([[-9.0], [-9.0], [0.0]])):
+        found = bounded_step(alone, normal, at, at, Bounds(np.broadcast_to(lower, (3, 1)), at + 1.0))
+        assert found is not None
+        assert found.step.tolist() == [[1.0], [0.5], [-1.0 if np.ndim(lower) == 0 else 0.0]]
+        assert found.cut.tolist() == [1.0, 0.0, 0.0]

@@ -46,3 +46,10 @@ def test_however_far_something_is_exceeded_its_weight_is_seen_to_be_below_the_gr
         weight = central_weight(np.array([c]), 1e-12 * most, np.array([most]))
         assert weight[0] < most
         assert most - 0.1 * (most - weight[0]) < most
+
+
+@few
+@given(size=numbers, sign=signs, unit=st.sampled_from([1e-3, 7.0]))
+def test_the_penalty_counts_in_the_unit_of_the_greatest_weight(size, sign, unit):
+    c, most = np.array([sign * size]), np.array([2.0])
+    assert penalty(c, 0.1 * unit, unit * most) == pytest.approx(unit * penalty(c, 0.1, most), rel=1e-9)

@@ -46,3 +46,14 @@ def test_ends_are_mixed_with_their_multipliers():
     assert mixed.multipliers[0][:, 0].tolist() == [wide.multipliers[0][0, 0], narrow.multipliers[0][1, 0]]
     assert mixed.ease.tolist() == [1.5, 1.0]
     assert mixed.steps == wide.steps + narrow.steps
+
+
+def test_of_mixed_ends_one_that_was_told_to_stop_is_enough():
+    model = held_points(np.array([[3.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    free, told = (interior_point(model, model.targets.copy(), Limits(steps=2), tell=tell) for tell in (None, no))
+    for one, other in ((free, told), (told, free)):
+        assert one.mixed(other, np.array([True]), Components.of(model.pattern)).told_to_stop
+
+
+def no(*_: object) -> bool:
+    return False

@@ -1,10 +1,12 @@
 """Who gives way where not everything can be held, and by how much."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from cadpanel.solver.ended import Limits
-from cadpanel.solver.giving_way import HeldSolution, hold_or_give_way
+from cadpanel.solver.ended import Ended, Limits
+from cadpanel.solver.giving_way import HeldSolution, _holds, _Search, hold_or_give_way
 from cadpanel.solver.held_model import Point
 from cadpanel.solver.hold import Hold
 from cadpanel.solver.interior_point import interior_point
@@ -211,3 +213,67 @@ def test_how_far_distances_are_exceeded_does_not_hang_on_what_was_asked_for(seed
     assert exceeded == pytest.approx([exceeded[0]] * len(exceeded), rel=1e-6)
     # Held at both ends, the middle is 0.01 nearer to either one.
     assert exceeded[0] == pytest.approx(0.5 * ends - 0.01, rel=0.06)
+
+
+def ended(excess: float, ease: float = 1.0, firm: float = 0.0) -> Ended:
+    """An end of one point that exceeds its distance, which is so many times as wide, so many times."""
+    model = held_points(np.array([[3.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    end = interior_point(model, model.targets.copy(), Limits(steps=0))
+    best = replace(end.best, firm=np.array([firm]), excess=np.array([excess]), unknowns=np.array([[excess, ease]]))
+    return replace(end, best=best, ease=np.array([ease]), steps=7)
+
+
+def searching() -> _Search:
+    model = held_points(np.array([[3.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    return _Search(model, Limits(), np.inf, None, None)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "better"),
+    [
+        (ended(1.0, 4.0), ended(2.0, 1.0), True),
+        (ended(1.0, 2.0), ended(3.0, 1.0), False),
+        (ended(2.0), ended(9.0, firm=1.5), False),
+        (ended(2.0, firm=1.5), ended(9.0, firm=1.2), True),
+        (ended(2.0, firm=0.2), ended(1.9, firm=0.9), True),
+        (ended(1.9, firm=0.9), ended(2.0, firm=0.2), False),
+    ],
+)
+def test_better_is_what_holds_what_it_must_and_then_what_exceeds_what_was_asked_for_less(one, other, better):
+    found = searching()._better(one, other, np.ones(1, dtype=bool))
+    assert np.array_equal(found.best.unknowns, (other if better else one).best.unknowns)
+
+
+@pytest.mark.parametrize(("excess", "ease", "holds"), [(0.4, 2.0, True), (0.6, 2.0, False), (1.5, 0.5, True)])
+def test_what_was_widened_holds_where_it_would_without(excess, ease, holds):
+    end = ended(excess, ease)
+    assert _holds(end.best, end.ease).tolist() == [holds]
+    stopped = (Stop.HELD,)
+    assert HeldSolution(end, stopped, 1).excess.tolist() == [excess * ease]
+
+
+def test_what_came_much_nearer_is_gone_on_with_and_what_hardly_did_not_is_not_asked_again(monkeypatch):
+    """From 10 it tries 10 / 1.7; what comes to 7.6 without holding goes on from there, what comes to 9.8 does not."""
+    for excess, following in ((1.3, 1.3 / 1.7 * 10.0 / 1.7), (1.66, np.sqrt(1.66) * 10.0 / 1.7)):
+        search = searching()
+        trials: list[float] = []
+
+        def steps(_start, trial, *_, trials=trials, excess=excess, search=search):
+            trials.append(float(trial[0]))
+            search.told = len(trials) == 2
+            return ended(excess)
+
+        monkeypatch.setattr(search, "_steps_from", steps)
+        search._narrowed(ended(10.0), np.ones(1, dtype=bool), np.zeros(1))
+        assert trials == pytest.approx([10.0 / 1.7, following], rel=1e-12)
+
+
+def test_linear_systems_of_all_that_was_tried_are_counted():
+    """Also of what another solution took, and of what was done elsewhere."""
+    one, other = (HeldSolution(ended(1.0), (Stop.HELD,), steps) for steps in (30, 12))
+    assert one.mixed(other, np.ones(1, dtype=bool), searching()._blocks).iterations == 42
+    counts = [
+        solve(around_the_middle(), elsewhere=lambda *_, extra=extra: (np.array([[2.0]]), extra)).iterations
+        for extra in (5, 1005)
+    ]
+    assert counts[1] - counts[0] == 1000

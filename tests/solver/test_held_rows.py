@@ -13,11 +13,11 @@ def test_vectors_of_any_batches_stand_after_each_other_and_numbers_below_0_count
     gaps = HeldBatch(Hold(np.ones((2, 2)), weight=0.0, gives_way=True), np.zeros((2, 2, 3)), (first, first + 1), first)
     lacks = HeldBatch(Hold(np.full((3, 1), 4.0), weight=2.0, one_sided=True), np.zeros((3, 1, 1)), (np.arange(3),))
     apart = np.random.default_rng(0).normal(size=(2, 2, 3))
-    numbers = np.array([[[-2.0]], [[0.0]], [[3.0]]])
+    numbers = np.array([[[-2.0]], [[0.0]], [[0.2]]])
     held = HeldRows.of_batches([gaps, lacks], [apart, numbers], 3, 2)
     at = held.measured([apart, numbers])
-    assert np.allclose(at.squares, [*np.sum(apart**2, axis=-1).reshape(-1), 0.0, 0.0, 9.0])
-    assert at.values[-3:].tolist() == [-2.0, 0.0, 3.0]
+    assert np.allclose(at.squares, [*np.sum(apart**2, axis=-1).reshape(-1), 0.0, 0.0, 0.04])
+    assert at.values[-3:].tolist() == [-2.0, 0.0, 0.2]
     assert held.first.tolist() == [0, 0, 1, 1, 0, 1, 2]
     assert held.second.tolist() == [1, 1, 2, 2, 0, 1, 2]
     assert held.weights().tolist() == [0.0] * 4 + [2.0] * 3

@@ -1,5 +1,6 @@
 """Vectors held within distances: problems whose constrained optimum is known."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from cadpanel.arrays import Array
 from cadpanel.solver.bounds import Bounds
 from cadpanel.solver.ended import Limits
 from cadpanel.solver.hold import Hold
-from cadpanel.solver.interior_point import interior_point
+from cadpanel.solver.interior_point import _Run, interior_point
 from tests.solver.models import HeldBatch, HeldTargets, held_chain, held_points, side_by_side
 from tests.thorough import thorough
 
@@ -179,3 +180,54 @@ def test_what_is_not_to_move_stays_where_it_stands_and_holds_up_nothing():
     assert end.settled.tolist() == [False, True]
     alone = interior_point(chains[1], chains[1].targets.copy(), Limits())
     assert end.best.unknowns[4:] == pytest.approx(alone.best.unknowns, abs=1e-8)
+
+
+class Uphill(HeldTargets):
+    """A model whose slope points the wrong way, and whose curvature is this many times what it is."""
+
+    curvature = 1.0
+
+    def at(self, unknowns):
+        point = super().at(unknowns)
+        point.normal.gradient *= -1.0
+        point.normal.diagonal *= self.curvature
+        return point
+
+
+def uphill(curvature: float) -> Uphill:
+    model = held_points(np.array([[3.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    wrong = Uphill(model.targets, model.held)
+    wrong.curvature = curvature
+    return wrong
+
+
+def test_where_nothing_helps_it_begins_anew_three_times_and_no_more(monkeypatch):
+    begun = []
+    begin_anew = _Run._begin_anew
+
+    def noted(run, where):
+        begun.append(where.tolist())
+        begin_anew(run, where)
+
+    monkeypatch.setattr(_Run, "_begin_anew", noted)
+    interior_point(uphill(1e-6), np.array([[2.0, 0.0]]), Limits(steps=100))
+    assert begun == [[True]] * 3
+
+
+def test_what_cannot_be_solved_is_damped_ten_times_as_heavily_until_that_helps_no_more():
+    """From 0.03 to a million in 8 steps; before, it begins anew after 7 of them, three times."""
+    end = interior_point(uphill(-1e12), np.array([[2.0, 0.0]]), Limits(steps=100))
+    assert end.steps == 3 * 7 + 8
+    assert end.damping.tolist() == [1e6]
+    assert not end.settled.any()
+
+
+@pytest.mark.parametrize(("firm", "waits"), [(0.9995, 0), (1.0009, 0), (1.0011, 1), (1.49, 1), (1.51, 0)])
+def test_what_may_give_way_waits_while_what_must_hold_exceeds_its_distance_by_a_little(firm, waits):
+    model = held_points(np.array([[3.0, 0.0]]), np.zeros((1, 2)), np.ones(1))
+    run = _Run(model, model.targets.copy(), Limits(patience=5), 1.0, None, None)
+    run.now = replace(run.now, firm=np.array([firm]))
+    widest, nothing = run.widest.copy(), np.zeros(1, dtype=bool)
+    run._narrow(nothing, nothing, np.ones(1), np.ones(1))
+    assert run.waited.tolist() == [waits]
+    assert (run.widest < widest).tolist() == [not waits]

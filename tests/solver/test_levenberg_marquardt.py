@@ -317,3 +317,10 @@ def test_the_unit_of_the_residuals_does_not_matter(unit):
     scaled = levenberg_marquardt(side_by_side(residual, jacobian, start, np.array([unit])), start, TIGHT)
     assert scaled.iterations == plain.iterations
     assert scaled.unknowns == pytest.approx(plain.unknowns, rel=1e-9)
+
+
+@pytest.mark.parametrize("least", [0, 1, 4])
+def test_it_takes_as_many_steps_as_are_asked_for_at_least(least):
+    start = np.array([[1.0, 1.0]])
+    model = side_by_side(rosenbrock, rosenbrock_jacobian, start)
+    assert levenberg_marquardt(model, start, Stopping(least=least)).iterations == max(least, 1)

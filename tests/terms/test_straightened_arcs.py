@@ -34,4 +34,4 @@ def test_straightened_vectors_are_as_long_as_the_way_to_where_cone_and_cut_meet(
     gram = rates @ np.swapaxes(rates, -1, -2)
     wanted = np.einsum("gqa,gqa->gq", distances, np.linalg.solve(gram, distances[..., None])[..., 0])
     assert np.abs(gram[..., 0, 1]).max() > 0.03
-    np.testing.assert_allclose(np.sum(arcs.vectors(state) ** 2, axis=-1), wanted, rtol=1e-3)
+    np.testing.assert_allclose(np.sum(arcs.vectors(state) ** 2, axis=-1), wanted, rtol=1e-6)

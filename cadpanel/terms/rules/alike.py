@@ -63,14 +63,13 @@ class AlikeTerm(HeldTerm):
             for place, patch in enumerate(curved[: self._bends]):
                 dimensions, own = walked.dimensions[patch], group.feature.patch_slice(patch)
                 radius, value = dimensions.values[:, RADIUS], dimensions.values[:, self._what]
-                told[group.panels, place] = _SCALE * (
-                    np.log(np.abs(radius)) if self._what == RADIUS else side * np.sign(radius) * value
-                )
+                way = side * np.sign(radius)
+                told[group.panels, place] = _SCALE * (np.log(np.abs(radius)) if self._what == RADIUS else way * value)
                 if not derivatives:
                     continue
-                slope = 1.0 / radius if self._what == RADIUS else side * np.sign(radius)
+                slope = 1.0 / radius if self._what == RADIUS else way
                 by_numbers = np.zeros((len(radius), len(group.feature.numbers)))
                 by_numbers[:, own] = _SCALE * slope[:, None] * dimensions.by_numbers()[:, self._what]
                 by_unknowns = group.feature.by_unknowns(by_numbers)
-                rates[group.panels, place, : by_unknowns.shape[-1]] = by_unknowns
+                rates[group.panels, place, : by_unknowns.shape[1]] = by_unknowns
         return told, rates

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cadpanel.solver.blocks import Normal
 from cadpanel.terms.limits.lower_bound import LackTerm
 
 LEAST = 2.0
@@ -48,6 +49,9 @@ def test_however_little_is_lacking_it_is_held_and_pulls(lack):
     cost = np.zeros(3)
     cost[PANELS] = 0.5 * np.sum((roots * wanted) ** 2, axis=1)
     assert term.cost(state) == pytest.approx(cost, rel=1e-9, abs=1e-13)
+    normal = Normal.zero(3, 4, 0)
+    assert term.add_to(normal, state) == pytest.approx(cost, rel=1e-9, abs=1e-13)
+    assert normal.gradient[PANELS] == pytest.approx(np.einsum("pq,pqx->px", rows.residual, jacobian))
 
 
 @pytest.mark.parametrize("spare", [0.0, 1e-12, 0.3, 1e9])
@@ -57,4 +61,7 @@ def test_what_lacks_nothing_neither_costs_nor_pulls(spare):
     assert not rows.residual.any()
     assert not rows.jacobians[0].any()
     assert not term.cost(state).any()
+    normal = Normal.zero(3, 4, 0)
+    assert not term.add_to(normal, state).any()
+    assert not normal.diagonal.any()
     assert np.all(term.vectors(state)[..., 0] == pytest.approx(-spare, abs=1e-12))

@@ -97,3 +97,16 @@ def test_the_terms_jacobian_agrees_with_finite_differences(name):
     for column, step in enumerate(1e-6 * np.eye(unknowns.shape[1])):
         ahead, behind = (term.vectors(problem.state(unknowns + side * step)) for side in (1.0, -1.0))
         assert exact[..., column] == pytest.approx((ahead - behind) / 2e-6, abs=1e-8)
+
+
+def test_an_end_that_is_cut_square_has_no_greater_angle_than_a_right_one():
+    """Also where rounding makes the sine of it more than 1."""
+    random = np.random.default_rng(1)
+    ways = random.normal(size=(50, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    way = ways[np.argmax(np.einsum("gx,gx->g", ways, ways))]
+    assert way @ way > 1.0
+    (shape,) = random_shapes(feature("cylinder"), 1, 1)
+    square = replace(shape, directions=np.tile(way, (2, 1)), cut_normals=np.tile(way, (2, 1)))
+    measured = LIMIT.measure(cast("Any", SimpleNamespace(shapes=[square])))
+    assert measured == pytest.approx([90.0], abs=1e-12)

@@ -65,8 +65,8 @@ def weighed(problem, term):
 @pytest.mark.parametrize("name", [FOLD, ALL_ROUND])
 @pytest.mark.parametrize(
     "made",
-    [lambda p: alike(p, RADIUS), lambda p: alike(p, HALF_ANGLE), mirrored, near],
-    ids=["r", "a", "mirror", "near"],
+    [lambda p: alike(p, RADIUS), lambda p: alike(p, HALF_ANGLE), mirrored, near, level],
+    ids=["r", "a", "mirror", "near", "level"],
 )
 def test_derivatives_are_exact(name, made):
     case = case_of(name, 5, panels=3)
@@ -101,3 +101,29 @@ def test_a_radius_counts_by_its_ratio_and_whichever_way_it_bends():
     assert np.abs(term.vectors(case.problem.state(case.unknowns))).max() == 0.0
     case.unknowns[1, column] *= 2.0
     assert term.vectors(case.problem.state(case.unknowns)).item() == pytest.approx(-0.1 * np.log(2.0))
+
+
+def test_points_in_their_planes_are_off_them_by_nothing_and_others_by_their_height():
+    case = case_of(FOLD, 3)
+    term, state = level(case.problem), case.problem.state(case.unknowns)
+    height = np.linspace(-0.1, 0.2, len(term._normals))
+    points = state.boundary.position[1, places_in(case.problem.layout, 1)]
+    term._offsets = points @ [0.6, 0.0, 0.8] - height
+    assert term.vectors(state)[:, 0, 0] == pytest.approx(height, abs=1e-14)
+
+
+def test_what_is_mirrored_is_how_far_points_are_from_the_images_of_the_others():
+    """The image lies as far behind the plane, square to it."""
+    case = case_of(FOLD, 6, panels=3)
+    problem, state = case.problem, case.problem.state(case.unknowns)
+    places, world = places_in(problem.layout, 0), problem.place.to_world(state.boundary.position)
+    first, second = world[0, places], world[1, places[::-1]]
+    point, normal = np.array([0.3, 0.1, -0.2]), np.array([0.6, 0.0, 0.8])
+    image = second - 2.0 * ((second - point) @ normal)[:, None] * normal
+    assert mirrored(problem).vectors(state)[0] == pytest.approx(first - image, abs=1e-13)
+
+
+@pytest.mark.parametrize("what", [RADIUS, HALF_ANGLE])
+def test_bends_a_tenth_apart_are_held_as_a_hundredth_of_the_length(what):
+    term = alike(case_of(FOLD, 1).problem, what)
+    assert term.hold.radius == pytest.approx(np.full(term.hold.radius.shape, 0.01), rel=1e-15)

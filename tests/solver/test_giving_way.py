@@ -211,3 +211,11 @@ def test_how_far_distances_are_exceeded_does_not_hang_on_what_was_asked_for(seed
     assert exceeded == pytest.approx([exceeded[0]] * len(exceeded), rel=1e-6)
     # Held at both ends, the middle is 0.01 nearer to either one.
     assert exceeded[0] == pytest.approx(0.5 * ends - 0.01, rel=0.06)
+
+
+def test_where_nothing_can_give_way_what_must_hold_is_tried_once():
+    """The same steps again would end at the same place; elsewhere is another matter."""
+    stuck = solve(around_the_middle())
+    once = interior_point(around_the_middle(), np.zeros((1, 1)), Limits())
+    assert stuck.iterations == once.steps
+    assert np.array_equal(stuck.unknowns, once.best.unknowns)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
@@ -17,7 +18,7 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Limits
-from cadpanel.solver.giving_way import Elsewhere, HeldSolution, hold_or_give_way
+from cadpanel.solver.giving_way import IDLE, Elsewhere, HeldSolution, hold_or_give_way
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
@@ -186,7 +187,7 @@ def held_within(
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    limits = Limits(least_cost=lengths * EXACT**2)
+    limits = Limits(least_cost=lengths * EXACT**2, idle=math.inf if costly else IDLE)
     return hold_or_give_way(
         model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
     )

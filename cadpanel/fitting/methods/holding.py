@@ -102,15 +102,21 @@ def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]
         excess: (seams,) what was measured along seams over what is allowed, of the gap, its parts and kinks.
     """
     shares = {what: np.where(over > 1.0, _AIM / np.maximum(over, 1.0), 1.0) for what, over in excess.items()}
+    look_again(terms, state)
     for term in terms:
-        if isinstance(term, PartedGap | ArcGap):
-            term.straighten(state)
         if isinstance(term, PartedGap):
             term.hold.tighten(np.min([shares[part] for part in term.parts], axis=0)[term.seams.index])
         elif isinstance(term, KinkTerm):
             term.hold.tighten(shares[Kink.name][term.seams.index])
         elif isinstance(term, CornerGap | ArcGap | MixedGap):
             term.hold.tighten(shares["gap"][term.seams.index])
+
+
+def look_again(terms: Sequence[HeldTerm], state: State) -> None:
+    """Look at seams as they run in a state from now on."""
+    for term in terms:
+        if isinstance(term, PartedGap | ArcGap):
+            term.straighten(state)
 
 
 def prices(

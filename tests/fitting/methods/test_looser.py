@@ -41,7 +41,7 @@ LADDERS: dict[str, tuple[Sequence[float], Sequence[float]]] = {
     "drift_outline": ([0.05, 0.3], [0.0005, 0.001, 0.003, 0.01, 0.05]),
     "min_radius": ([200.0, 10.0], [400.0, 300.0, 200.0, 150.0, 100.0, 10.0]),
 }
-LIPS = [f"lip {seed}" for seed in cases(range(5, 6), range(12))]
+LIPS = [f"lip {seed}" for seed in cases(range(5, 6), range(6))]
 
 
 @cache

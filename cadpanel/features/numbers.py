@@ -82,8 +82,6 @@ class Number:
 
     def in_units(self, length: float) -> Number:
         """The same number with lengths counted in units of `length` mm."""
-        if POWERS[self.unit] == 0.0:
-            return self
         one = length ** POWERS[self.unit]
         fixed = None if self.fixed is None else self.fixed / one
         return replace(self, fixed=fixed, lower=self.lower / one, upper=self.upper / one)

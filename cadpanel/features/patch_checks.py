@@ -85,7 +85,7 @@ def _check_dimensions(patch: Patch) -> None:
         raise _refused(patch, "is called a cylinder and has a half angle that is not 0")
     if not _agree(patch.numbers_for(found.values), values):
         raise _refused(patch, "has 'numbers_for' that do not give back the numbers whose 'dimensions' they are given")
-    if not _agree(rates + np.zeros((len(wanted), 1, 1)), _differences(patch, np.array(values))):
+    if not _agree(np.broadcast_to(rates, (len(wanted), size, count)), _differences(patch, np.array(values))):
         raise _refused(patch, "has 'dimensions' whose rates are not how their values follow the numbers")
     if not _agree(patch.dimensions(_in_other_unit(patch, np.array(values))).values, _scaled(patch, found.values)):
         raise _refused(

@@ -23,6 +23,6 @@ def meeting(least: Array, greatest: Array, touch: float) -> Iterator[tuple[int, 
     starts = least[order, 0]
     for place, i in enumerate(order.tolist()):
         last = int(np.searchsorted(starts, greatest[i, 0] - touch))
-        others = order[place + 1 : max(last, place + 1)]
+        others = order[place + 1 : last]
         meets = (least[others, 1:] < greatest[i, 1:] - touch) & (greatest[others, 1:] > least[i, 1:] + touch)
         yield from ((min(i, j), max(i, j)) for j in others[meets.all(axis=1)].tolist())

@@ -74,9 +74,7 @@ def side_in_plane(shape: SomeChain, side: int, plane: CutPlane, depth: float) ->
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
     faces = [curve_in_plane(shape, of, side, plane) for of in (frame, lifted(frame, depth))]
     shares = np.concatenate([curve.corners for curve in faces]) / patch.sweep
-    share = float((1.0 - shares).min() if side else shares.min())
-    if not FARTHEST_OUT < share < 1.0:
-        raise PanelError(shape.name, _too_far(side))
+    share = _near_enough(shape, side, float((1.0 - shares).min() if side else shares.min()))
     return _cut_off(shape, frame, side, share).walled(side, plane)
 
 
@@ -128,14 +126,12 @@ def _along_a_ruling(shape: SomeChain, side: int, plane: CutPlane, depth: float) 
     patch = shape.patches[index]
     assert isinstance(patch, ConePatch)
     frame = axis_frame(shape.points[index], shape.directions[index], shape.normals[index], patch)
-    level = _level(frame, plane) if may_lean(patch) else None
-    share = _share_cut_off(shape, frame, side, plane, depth, level)
+    share = _share_cut_off(shape, frame, side, plane, depth, leaning=may_lean(patch))
     moved = _cut_off(shape, frame, side, share)
-    if level is None:
+    if not may_lean(patch):
         return moved
     leans = shape.side_leans.copy()
-    ruling = _Ruling(moved.points[[-side]], moved.directions[[-side]], moved.normals[[-side]])
-    leans[side] = _leans(ruling, level)[0]
+    leans[side] = _leans(moved.directions[[-side]], moved.normals[[-side]], plane)[0]
     return moved.trimmed(shape.cut_points, shape.cut_normals, leans)
 
 
@@ -152,23 +148,16 @@ def _cut_off(shape: SomeChain, frame: AxisFrame, side: int, share: float) -> Som
     return shape.rewalked(points, directions, normals, patches)
 
 
-def _level(frame: AxisFrame, plane: CutPlane) -> Array:
-    """(3,) normal of the plane along a cylinder's axis that leans as the given one does."""
-    return np.asarray(unit(plane.normal - (plane.normal @ frame.axis) * frame.axis))
+def _leans(directions: Array, normals: Array, plane: CutPlane) -> Array:
+    """(m,) by how much walls lean along b for one mm along n that stand along rulings (m, 3) as a plane does."""
+    return np.asarray(-(normals @ plane.normal) / (cross(directions, normals) @ plane.normal))
 
 
-def _leans(turned: _Ruling, level: Array) -> Array:
-    """(m,) by how much walls square to `level` lean along b for one mm along n, at rulings of a cylinder."""
-    return np.asarray(-(turned.normals @ level) / (cross(turned.directions, turned.normals) @ level))
-
-
-def _share_cut_off(
-    shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, depth: float, level: Array | None
-) -> float:
+def _share_cut_off(shape: Chain, frame: AxisFrame, side: int, plane: CutPlane, depth: float, *, leaning: bool) -> float:
     """The share of the sweep that goes, so that the last of the four corners comes behind the plane.
 
     Each corner's distance beyond the plane falls smoothly as the side moves inwards: the secant method finds its zero.
-    The wall stands square to the sheet, or square to `level`.
+    The wall stands square to the sheet, or leans as the plane does.
     """
     ends = np.array([0, 1, 0, 1])
     depths = np.array([0.0, 0.0, depth, depth])
@@ -176,8 +165,8 @@ def _share_cut_off(
     def beyond(shares: Array) -> Array:
         turned = _rulings(frame, frame.sweep * (shares if side == 0 else 1.0 - shares))
         starts = turned.points + depths[:, None] * turned.normals
-        if level is not None:
-            leans = _leans(turned, level)
+        if leaning:
+            leans = _leans(turned.directions, turned.normals, plane)
             ways = turned.normals + leans[:, None] * cross(turned.directions, turned.normals)
             starts = turned.points + risen(frame.level_radius, leans, depths)[:, None] * ways
         rates = np.einsum("cx,cx->c", turned.directions, shape.cut_normals[ends])
@@ -194,14 +183,15 @@ def _share_cut_off(
         found = beyond(now)
         if np.abs(now - before).max() <= CLOSE_TURN:
             break
-    share = float(now.max())
+    return _near_enough(shape, side, float(now.max()))
+
+
+def _near_enough(shape: Chain, side: int, share: float) -> float:
+    """The share of a sweep by which a side is moved inwards, once it is seen that there is a wall."""
     if not FARTHEST_OUT < share < 1.0:
-        raise PanelError(shape.name, _too_far(side))
+        raise PanelError(
+            shape.name,
+            f"its neighbour at side {side} lies too far away for a wall between the two: hold a smaller gap tolerance, "
+            "or read the reference with a smaller --seam-tolerance, so that they do not meet.",
+        )
     return share
-
-
-def _too_far(side: int) -> str:
-    return (
-        f"its neighbour at side {side} lies too far away for a wall between the two: hold a smaller gap tolerance, "
-        "or read the reference with a smaller --seam-tolerance, so that they do not meet."
-    )

@@ -30,7 +30,7 @@ def _chains(pieces: CurvePieces, origin: Array) -> ConicChains:
     along, turn = pieces.cosine_axes, pieces.stops - pieces.starts
     nothing = np.zeros_like(along)
     return conic_chains(
-        constant=pieces.centers - origin[:, None] + np.where(arcs, 0.0, pieces.starts[..., None] * along),
+        constant=pieces.centers - origin[:, None],
         cosine=np.where(arcs, along, 0.0),
         sine=np.where(arcs, pieces.sine_axes, 0.0),
         weights=np.broadcast_to([1.0, 0.0, 0.0], along.shape),

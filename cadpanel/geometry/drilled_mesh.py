@@ -121,8 +121,8 @@ def _with_holes(made: _Vertices, triangles: IntArray, rounds: IntArray) -> IntAr
         clear = np.concatenate([clear, between])
         sides = np.concatenate([sides[~lost], np.stack([first, between, between, last], axis=1).reshape(-1, 2)])
     start, stop = (bent(made.chart[ends]) for ends in np.concatenate([sides, _sides(rounds)]).T)
-    found = found[inside_edges(bent(made.chart[found]).mean(axis=1), start, stop)]
-    return found if _turn(made.chart[triangles]) > 0.0 else found[:, ::-1]
+    # Delaunay's run counterclockwise, as all do on a chart.
+    return found[inside_edges(bent(made.chart[found]).mean(axis=1), start, stop)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,8 +158,8 @@ def _clear(chart: Array, inner: IntArray, rounds: IntArray) -> IntArray:
 
 def _border(triangles: IntArray) -> IntArray:
     """(m, 2) the sides that one triangle only has, as it runs through them."""
-    sides, count = _sides(triangles), int(triangles.max()) + 1
-    return sides[~np.isin(sides[:, 0] * count + sides[:, 1], sides[:, 1] * count + sides[:, 0])]
+    sides = _sides(triangles)
+    return sides[~np.isin(_named(sides), _named(sides[:, ::-1]))]
 
 
 def _sides(rounds: IntArray) -> IntArray:
@@ -167,22 +167,14 @@ def _sides(rounds: IntArray) -> IntArray:
     return np.stack([rounds, np.roll(rounds, -1, axis=1)], axis=-1).reshape(-1, 2)
 
 
-def _turn(corners: Array) -> float:
-    """Twice the area of triangles (f, 3, 2), below 0 where they run clockwise."""
-    (ux, uy), (vx, vy) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
-    return float((ux * vy - uy * vx).sum())
-
-
 def _on_chart(mesh: SkinMesh, rims: Array) -> tuple[Array, IntArray]:
     """(h, k, 2) where points (h, k, 3) near a mesh lie on its chart, and (h,) the patch of each hole."""
     corners = mesh.points[mesh.triangles]
-    middles = corners.mean(axis=1)
-    reach = np.linalg.norm(corners - middles[:, None], axis=-1).max(axis=1)
+    middles, sizes = corners.mean(axis=1), np.linalg.norm(np.ptp(corners, axis=1), axis=-1)
     places, patches = np.empty((*rims.shape[:2], 2)), np.empty(len(rims), dtype=np.intp)
     for hole, rim in enumerate(rims):
-        middle = rim.mean(axis=0)
-        radius = np.linalg.norm(rim - middle, axis=-1).max()
-        near = np.flatnonzero(np.linalg.norm(middles - middle, axis=-1) <= reach + 2.0 * radius)
+        size = np.linalg.norm(np.ptp(rim, axis=0))
+        near = np.flatnonzero(np.linalg.norm(middles - rim.mean(axis=0), axis=-1) <= sizes + size)
         on, shares = _lying_on(corners[near], rim)
         places[hole] = np.einsum("kc,kcx->kx", shares, mesh.chart[mesh.triangles[near[on]]])
         patches[hole] = mesh.patches[near[on[0]]]
@@ -207,5 +199,9 @@ def _lying_on(corners: Array, points: Array) -> tuple[IntArray, Array]:
 def _lost(sides: IntArray, triangles: IntArray) -> BoolArray:
     """(m,) which sides (m, 2) are no side of a triangle."""
     own, wanted = np.sort(_sides(triangles), axis=1), np.sort(sides, axis=1)
-    many = int(max(triangles.max(), sides.max())) + 1
-    return ~np.isin(wanted[:, 0] * many + wanted[:, 1], own[:, 0] * many + own[:, 1])
+    return ~np.isin(_named(wanted), _named(own))
+
+
+def _named(sides: IntArray) -> IntArray:
+    """(m,) a number of its own for each side (m, 2), told from its first end to its second."""
+    return np.asarray(sides[:, 0].astype(np.int64) << 32 | sides[:, 1])

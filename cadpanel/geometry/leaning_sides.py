@@ -7,6 +7,7 @@ two parallel cones in a ruling each goes through both of their apexes and stands
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -66,8 +67,7 @@ def parallel_walk(
         if lean == 0.0 or not isinstance(patch, ConePatch):
             continue
         rise = float(risen(patch.radius, np.array([lean]), np.array([distance]))[0])
-        beyond = patch.radius + distance
-        turn = float(np.arctan2(rise * lean / beyond, (patch.radius + rise) / beyond))
+        turn = math.atan(rise * lean / (patch.radius + rise))  # a wall is left before it has turned by a quarter
         normal, binormal = normals[-side], binormals[-side]
         moved[-side] = points[-side] + rise * ways[-side]
         turned[-side] = np.cos(turn) * normal + np.sin(turn) * binormal

@@ -45,4 +45,4 @@ def _feet(points: Array, lines: Array) -> tuple[Array, Array]:
     way = np.broadcast_to(step, away.shape)[row, column, nearest]
     inside = kept[row, column, nearest] == share[row, column, nearest]
     size = norm(way)
-    return found, np.where((inside & (size > 0.0))[..., None], way / np.where(size > 0.0, size, 1.0)[..., None], 0.0)
+    return found, np.where(inside[..., None], way / np.where(size > 0.0, size, 1.0)[..., None], 0.0)

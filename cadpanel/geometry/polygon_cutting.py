@@ -56,7 +56,7 @@ def cut_polygon(shape: Outlined, planes: Mapping[str, CutPlane], depth: float) -
         for i in range(count)
     ]
     group = _groups(outs, shape.normal)
-    walls = [_common([i for i in range(count) if group[i] == g], lines, square, corners) for g in group]
+    walls = [_wall(i, [j for j in range(count) if group[j] == group[i]], lines, square, corners) for i in range(count)]
     for _ in range(MOST_ROUNDS):
         moved, posts = _corners(corners, shape.normal, walls, square, group)
         ahead = _ahead(moved, posts, lines, (0.0, depth))
@@ -90,11 +90,14 @@ def _groups(outs: Array, normal: Array) -> list[int]:
     return group
 
 
-def _common(members: list[int], lines: list[_Line], square: list[_Line], corners: Array) -> _Line:
-    """One wall for edges that go on straight, the mean of theirs; where it stands is found by `_ahead`."""
+def _wall(edge: int, members: list[int], lines: list[_Line], square: list[_Line], corners: Array) -> _Line:
+    """The wall of an edge: of those that go on straight one for all, the mean of theirs, where any is given.
+
+    Where that stands is found by `_ahead`. Where none is given each edge stays where it is.
+    """
     given = [lines[i] for i in members if lines[i] is not square[i]]
     if len(members) == 1 or not given:
-        return lines[members[0]]
+        return lines[edge]
     out = unit(np.sum([lines[i].out for i in members], axis=0))
     ends = [corners[end % len(corners)] for i in members for end in (i, i + 1)]
     return _Line(out, max(float(out @ end) for end in ends), float(np.mean([line.lean for line in given])))

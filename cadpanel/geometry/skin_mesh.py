@@ -14,6 +14,7 @@ from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.plane_section import plane_section
 from cadpanel.geometry.plane_sides import side_curves
 from cadpanel.geometry.polyline import arc_length
+from cadpanel.geometry.tray_plan import TrayPlan
 from cadpanel.geometry.trays import TrayShape
 from cadpanel.geometry.vectors import cross, side_of, unit
 
@@ -31,9 +32,10 @@ class SkinMesh:
     Attributes:
         points: (v, 3) on the skin, mm.
         triangles: (f, 3) counterclockwise seen from outside.
-        chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths.
+        chart: (v, 2) where the vertices lie on a flat map of the skin, mm; it keeps neighbours together, not lengths,
+            and triangles run counterclockwise on it, too.
         ways: (v, 2, 3) unit vectors in the skin along the chart's two axes.
-        patches: (f,) which triangles belong to one patch: its number, in the mesh's own order.
+        patches: (f,) the patch to which each triangle belongs, by its place among the panel's.
     """
 
     points: Array
@@ -129,7 +131,7 @@ def _tray_mesh(shape: TrayShape) -> SkinMesh:
     plan = shape.plan
     origin = plan.corners[0] + shape.lift * plan.normal
     axes = np.stack([plan.along[0], cross(plan.normal, plan.along[0])])
-    flat = (_round_reliefs(shape) - origin) @ axes.T
+    flat = (_round_reliefs(plan) - plan.corners[0]) @ axes.T
     chart, triangles = _halved(flat, _ears(flat))
     meshes = [
         SkinMesh(
@@ -142,22 +144,22 @@ def _tray_mesh(shape: TrayShape) -> SkinMesh:
     ]
     meshes += [_fold_mesh(shape, edge, axes) for edge in np.flatnonzero(plan.folded).tolist()]
     starts = np.cumsum([0] + [len(mesh.points) for mesh in meshes[:-1]])
+    firsts = np.cumsum([0] + [len(np.unique(mesh.patches)) for mesh in meshes[:-1]])
     return SkinMesh(
         points=np.concatenate([mesh.points for mesh in meshes]),
         triangles=np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]),
         chart=np.concatenate([mesh.chart for mesh in meshes]),
         ways=np.concatenate([mesh.ways for mesh in meshes]),
-        patches=np.concatenate([mesh.patches + 2 * place for place, mesh in enumerate(meshes)]),
+        patches=np.concatenate([mesh.patches + first for mesh, first in zip(meshes, firsts, strict=True)]),
     )
 
 
-def _round_reliefs(shape: TrayShape) -> Array:
-    """(q, 3) round its flat part."""
-    plan = shape.plan
+def _round_reliefs(plan: TrayPlan) -> Array:
+    """(q, 3) round the flat part, in the plane of its corners."""
     back, inwards = -np.roll(plan.along, 1, axis=0), -np.roll(plan.outward, 1, axis=0)
     turns = plan.openings[:, None] * np.linspace(0.0, 1.0, ACROSS + 1)
     ways = np.cos(turns)[..., None] * back[:, None] + np.sin(turns)[..., None] * inwards[:, None]
-    points = plan.corners[:, None] + plan.reliefs[:, None, None] * ways + shape.lift * plan.normal
+    points = plan.corners[:, None] + plan.reliefs[:, None, None] * ways
     return np.concatenate(
         [own if round_one else own[:1] for own, round_one in zip(points, (plan.reliefs > 0.0).tolist(), strict=True)]
     )

@@ -81,11 +81,10 @@ def square_polygon(shape: Outlined, posts: Array | None, depth: float) -> Array:
     corners, normal = shape.outline, shape.normal
     if posts is None:
         return corners
-    slides = posts - normal
     spans = np.roll(corners, -1, axis=0) - corners
     outs = unit(cross(spans, normal[None]))
     # A wall leans alike at both its corners; a hair of rounding is no lean.
-    back = np.minimum(0.0, depth * 0.5 * (dot(slides, outs) + dot(np.roll(slides, -1, axis=0), outs)))
+    back = np.minimum(0.0, depth * 0.5 * (dot(posts, outs) + dot(np.roll(posts, -1, axis=0), outs)))
     moved = corners.copy()
     for i in range(len(corners)):
         before, after = outs[i - 1], outs[i]

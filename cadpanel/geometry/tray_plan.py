@@ -230,11 +230,9 @@ def _reliefs(bed: Bed, folded: BoolArray, corners: Array, profiles: Array) -> Ar
     outermost, walls = bed.outer_corners, bed.walls
     radii = np.zeros(len(corners))
     own = np.arange(len(corners))
-    for ahead in (1.0, -1.0):
-        # The edge beside each where it ends, or begins; the corner between them; the way there.
-        other = np.roll(own, -1 if ahead > 0.0 else 1)
-        place = other if ahead > 0.0 else own
-        way = ahead * bed.along
+    following, before = np.roll(own, -1), np.roll(own, 1)
+    # The edge beside each where it ends, or begins; the corner between them; the way there.
+    for other, place, way in ((following, following, bed.along), (before, own, -bed.along)):
         beside = walls[other]
         ahead_of = np.where(folded[other][:, None], beside - walls, beside)
         apart = 0.5 * bed.thickness * np.linalg.norm(walls - beside, axis=-1) * folded[other]

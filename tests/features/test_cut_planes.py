@@ -57,6 +57,39 @@ def test_a_square_cut_is_as_far_from_the_anchor_as_its_position_says():
         assert s[:, end] - dot(m[:, end], walked.anchor.p[:, 0]) == pytest.approx(position, abs=ROUNDING)
 
 
+def test_corners_at_square_cuts_follow_the_numbers():
+    """A sheet 2 wide: its ends are 1 behind and 3 ahead of a ruling that leads along it, through (5, 0, 7)."""
+    of = Feature(Plane(turn=0.0), cuts="square")
+    place = {number.name: i for i, number in enumerate(of.numbers)}
+    values = np.zeros((1, len(place)))
+    values[0, :2] = 5.0, 7.0
+    values[0, [place["patch 0: width"], place["cut 0: position"], place["cut 1: position"]]] = 2.0, -1.0, 3.0
+    corners = of.corners(of.walk(values, derivatives=True))
+    assert corners.position[0] == pytest.approx(np.array([(4, -1, 7), (6, -1, 7), (4, 3, 7), (6, 3, 7)]))
+    assert corners.jacobian is not None
+    # A point on the ruling at `along` and `across` of it goes with whatever moves the ruling.
+    for corner, (x, y, z) in enumerate(corners.position[0]):
+        rates = corners.jacobian[0, corner].T
+        assert rates[:2] == pytest.approx(np.array([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)]))
+        assert rates[2:5] == pytest.approx(np.cross(np.eye(3), (x - 5.0, y, z - 7.0)))
+        end = corner // 2
+        assert rates[place[f"cut {end}: position"]] == pytest.approx((0.0, 1.0, 0.0))
+        assert rates[place[f"cut {1 - end}: position"]] == pytest.approx(0.0)
+
+
+def test_a_corner_runs_along_its_ruling_until_it_meets_the_cut_that_moved():
+    """Where a ruling leads aslant, by as much more as the cut goes ahead."""
+    of = Feature(Plane(), cuts="square")
+    place = {number.name: i for i, number in enumerate(of.numbers)}
+    values = np.zeros((1, len(place)))
+    values[0, [place["patch 0: width"], place["patch 0: turn"]]] = 2.0, 0.8
+    corners = of.corners(of.walk(values, derivatives=True))
+    assert corners.jacobian is not None
+    for corner, slant in enumerate((0.4, -0.4, 0.4, -0.4)):
+        rate = corners.jacobian[0, corner, :, place[f"cut {corner // 2}: position"]]
+        assert rate == pytest.approx((np.tan(slant), 1.0, 0.0))
+
+
 @every_chain
 @few
 @given(seed=seeds)

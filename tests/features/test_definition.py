@@ -134,6 +134,11 @@ def test_the_anchor_is_the_curved_patch_nearest_to_the_middle():
     assert CHAINS["planar-quadrilateral"].anchor == 0
 
 
+@pytest.mark.parametrize(("cones", "anchor"), [(1, 0), (2, 0), (3, 1), (4, 1), (5, 2)])
+def test_the_anchor_of_a_chain_of_cones_is_the_first_of_those_in_its_middle(cones, anchor):
+    assert Feature(*cones * [Cone()]).anchor == anchor
+
+
 @every_feature
 def test_numbers_have_unique_names(name):
     names = [number.name for number in FEATURES[name].numbers]

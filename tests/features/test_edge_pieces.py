@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cadpanel.features.edge_pieces import SHORT, edge_pieces, places, turns
+from cadpanel.features.edge_pieces import SHORT, boundary_points, edge_pieces, places, turns
 from cadpanel.features.panel_edges import chain_edges, polygon_edges
 
 
@@ -23,6 +23,11 @@ def test_a_polygon_has_one_piece_an_edge():
 
 def test_arc_points_stand_after_all_corners():
     assert places(np.array([0, 3, -1, -2]), 8).tolist() == [0, 3, 8, 9]
+
+
+def test_an_edge_lists_its_corners_and_then_its_arc_points():
+    _, end, *_ = chain_edges((False, True))
+    assert boundary_points(end) == [3, 4, 5, -4, -5, -6]
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 0.2, -0.2])

@@ -8,10 +8,13 @@ import pytest
 
 from cadpanel.errors import SettingsError
 from cadpanel.features import independence
+from cadpanel.features.distance import patch_distance_inner
 from cadpanel.features.feature import Feature
 from cadpanel.features.independence import LARGEST_FIXED, TRIALS, typical_values
-from cadpanel.features.patches import Cone, Cylinder, Plane
+from cadpanel.features.patches import Cone, Cylinder, Patch, Plane
 from tests.own_patches import ByRoot, CurvedBy
+
+KINDS: dict[str, Patch] = {"P": Plane(), "C": Cone(), "R": Cylinder()}
 
 
 def named_dependent(make):
@@ -87,6 +90,48 @@ def test_a_feature_is_independent_if_it_is_so_on_one_trial_however_large_its_num
     trials[:] = np.diag((1.0, 1e-12))
     with pytest.raises(SettingsError, match="depend on each other"):
         independence.refuse_dependent(feature)
+
+
+def any_feature(unknowns):
+    """A feature of which no more is known than how many unknowns it has."""
+    names = [SimpleNamespace(name=f"number {i}") for i in range(unknowns)]
+    return SimpleNamespace(name="any", free=range(unknowns), numbers=names)
+
+
+def test_the_trial_that_counts_is_the_one_whose_least_singular_value_is_largest_beside_its_greatest(monkeypatch):
+    """The second trial has the larger one of the two in the middle, and one that moves nothing."""
+    monkeypatch.setattr(independence, "motions", lambda *_: np.array([np.diag((1, 1e-3, 1e-3)), np.diag((1, 1, 0))]))
+    monkeypatch.setattr(independence, "typical_values", lambda *_: None)
+    independence.refuse_dependent(any_feature(3))
+
+
+def test_all_of_many_unknowns_are_named_that_take_part_alike(monkeypatch):
+    unknowns = 25
+    together = np.full(unknowns, unknowns**-0.5)
+    monkeypatch.setattr(independence, "motions", lambda *_: (np.eye(unknowns) - np.outer(together, together))[None])
+    monkeypatch.setattr(independence, "typical_values", lambda *_: None)
+    assert named_dependent(lambda: independence.refuse_dependent(any_feature(unknowns))) == {
+        f"number {i}" for i in range(unknowns)
+    }
+
+
+@pytest.mark.parametrize("kinds", ["PCPCP", "CCC", "CPC", "RP"])
+def test_a_feature_is_tried_at_points_of_its_own_patches(monkeypatch, kinds):
+    """On either end and, on a curved patch, between its rulings too."""
+    of = Feature(*(KINDS[kind] for kind in kinds))
+    tried = []
+
+    def noted(walked, x, patch):
+        found = patch_distance_inner(walked, x, patch)
+        tried.append((patch, x, found[0]))
+        return found
+
+    monkeypatch.setattr(independence, "patch_distance_inner", noted)
+    independence.motions(of, typical_values(of))
+    assert [patch for patch, _, _ in tried] == list(range(len(kinds)))
+    for patch, x, distance in tried:
+        assert distance == pytest.approx(0.0, abs=1e-12)
+        assert len(np.unique(x[:, 0].round(9), axis=1).T) == (10 if of.curved[patch] else 4)
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1e-3, 1e6])

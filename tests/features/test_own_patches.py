@@ -167,6 +167,30 @@ def test_numbers_in_another_unit_of_length_tell_of_the_same_patch(patch):
     assert told[1:] == pytest.approx(here[1:])
 
 
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e4])
+@pytest.mark.parametrize(("share", "passes"), [(0.99e-6, True), (1.01e-6, False)])
+def test_numbers_come_back_to_a_millionth_of_the_largest_or_of_one(scale, share, passes):
+    """The largest number of the patches that are tried is a sweep of 1.1."""
+    off = share * max(1.0, 1.1 * scale)
+
+    class Coarse(AngleFirst):
+        """A cone whose numbers are told in parts of its dimensions, and come back a little off."""
+
+        def dimensions(self, values):
+            found = AngleFirst.dimensions(self, values / scale)
+            assert found.rates is not None
+            return Dimensions(found.values, found.rates / scale)
+
+        def numbers_for(self, dimensions):
+            return scale * AngleFirst.numbers_for(self, dimensions) + np.array([off, 0.0, 0.0])
+
+    if passes:
+        check_patch(Coarse())
+    else:
+        with pytest.raises(SettingsError, match="do not give back the numbers"):
+            check_patch(Coarse())
+
+
 class Blind(AngleFirst):
     """A patch that passes, but that its dimensions forget the sign of a half angle."""
 

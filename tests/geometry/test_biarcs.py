@@ -1,11 +1,12 @@
 """Arcs follow flat curves within the tolerance that is asked for, without a kink."""
 
 import math
+from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
 
-from cadpanel.geometry.biarcs import arc_chains, arc_circle, arc_contour_area, off_arcs
+from cadpanel.geometry.biarcs import all_but_straight, arc_chains, arc_circle, arc_contour_area, off_arcs
 from cadpanel.geometry.flat_sizes import flat_sizes
 from cadpanel.geometry.unroll import unroll
 from tests.chains import CHAINS
@@ -70,6 +71,93 @@ def test_arcs_meet_without_a_kink_inside_of_every_curve(name):
             assert np.abs(np.angle(np.exp(1j * kinks))).max(initial=0.0) < 1e-9
 
 
+@dataclass(frozen=True)
+class Spiral:
+    """A curve that bends more and more, drawn at some size; a curve that tells how often it was asked for."""
+
+    size: float
+    asked: list[int] = field(default_factory=list)
+
+    @property
+    def start(self):
+        return self.points(np.zeros((1, 1)))[:, 0]
+
+    @property
+    def curved(self):
+        return np.array([True])
+
+    def __len__(self):
+        return 1
+
+    def take(self, rows):
+        self.asked.append(len(rows))
+        return self
+
+    def points(self, u):
+        return self.size * np.stack([np.exp(u) * np.cos(2.0 * u), np.exp(u) * np.sin(2.0 * u)], axis=-1)
+
+    def velocities(self, u):
+        x, y = np.moveaxis(self.points(u), -1, 0)
+        return np.stack([x - 2.0 * y, y + 2.0 * x], axis=-1)
+
+
+@pytest.mark.parametrize("scale", [2.0**-12, 2.0**12])
+@pytest.mark.parametrize("chord", [1.0, 1e-2, 1e-4])
+def test_a_larger_curve_within_a_larger_tolerance_has_the_same_arcs(scale, chord):
+    (arcs,), (larger,) = (arc_chains(Spiral(10.0 * by), chord * by) for by in (1.0, scale))
+    assert larger == pytest.approx(arcs * [scale, scale, 1.0])
+
+
+def test_arcs_are_not_many_more_than_are_needed_and_found_at_once():
+    """The error falls with the cube of their number, so that this times the root of the tolerance is a constant."""
+    chords = 10.0 ** np.linspace(-4.0, -7.0, 40)
+    beside = []
+    for chord in chords:
+        curve = Spiral(10.0)
+        beside.append(len(arc_chains(curve, chord)[0]) * np.cbrt(chord))
+        assert len(curve.asked) <= 6
+    assert max(beside) <= 1.15 * min(beside)
+
+
+def turned(angle, x, y):
+    """Points (..., 2) turned by angles."""
+    return np.stack([x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], axis=-1)
+
+
+@dataclass(frozen=True)
+class TwoArcs(Spiral):
+    """Two arcs that meet without a kink and turn by two angles, each over half of u; tangents at all ends are 10 mm."""
+
+    first: float = 1.0
+    second: float = 1.0
+
+    def _angles(self, u):
+        return self.first * np.clip(2.0 * u, 0.0, 1.0), self.second * np.clip(2.0 * u - 1.0, 0.0, 1.0)
+
+    def points(self, u):
+        places = np.zeros(2)
+        before = np.zeros_like(u)
+        for whole, angle in zip((self.first, self.second), self._angles(u), strict=True):
+            radius = self.size / np.tan(0.5 * whole)
+            places = places + radius * turned(before, np.sin(angle), 1.0 - np.cos(angle))
+            before = before + angle
+        return places
+
+    def velocities(self, u):
+        return turned(sum(self._angles(u)), 1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"), [(2.5, 0.2), (0.2, 2.5), (2.8, -0.4), (-0.5, 2.0), (1.0, 1.0), (0.3, 0.2), (2.8, 2.6)]
+)
+def test_a_curve_that_is_two_arcs_becomes_these_two(first, second):
+    """One stretch is enough, as every point is held against its own arc."""
+    curve = TwoArcs(10.0, first=first, second=second)
+    (arcs,) = arc_chains(curve, 1e-6)
+    assert arcs[:, :2] == pytest.approx(curve.points(np.array([[0.0, 0.5]]))[0], abs=1e-9)
+    assert arcs[:, 2] == pytest.approx(np.tan(0.25 * np.array([first, second])), abs=1e-9)
+
+
 def test_a_straight_edge_of_a_bend_is_one_segment():
     curves = unroll(folded_panel()).curves
     assert [len(vertices) for vertices in arc_chains(curves, 0.01)] == 8 * [1]
@@ -91,6 +179,25 @@ def test_two_half_circles_enclose_a_disc():
     centre, radius = arc_circle(np.array([2.0, 0.0]), np.array([0.0, 2.0]), math.tan(math.pi / 8.0))
     assert centre == pytest.approx([0.0, 0.0], abs=1e-12)
     assert radius == pytest.approx(2.0)
+
+
+def test_beyond_a_corner_the_distance_is_that_from_it():
+    """However little beyond it, on the line along which an edge arrives or leaves."""
+    triangle = np.array([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]])
+    for little in (0.01, 0.1, 1.0):
+        places = np.array([[4.0 + little, 0.0], [-little, 0.0], [0.0, 3.0 + little], [0.0, -little]])
+        assert off_arcs(triangle, places) == pytest.approx(little)
+    beside = np.array([[0.2, -0.1], [3.8, -0.1], [-0.1, 0.2], [-0.1, 2.8]])
+    assert off_arcs(triangle, beside) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(("chord", "bow"), [(0.1, 1e-6), (10.0, 1e-6), (1000.0, 3e-4), (1e4, 3e-2)])
+def test_an_arc_that_bows_by_less_than_can_be_told_is_a_line(chord, bow):
+    """By 1e-6 mm, or on long ones by what puts its centre too far away."""
+    stop = chord * np.array([0.6, 0.8])
+    for way in (1.0, -1.0):
+        assert all_but_straight(np.zeros(2), stop, way * 0.99 * bow / (0.5 * chord))
+        assert not all_but_straight(np.zeros(2), stop, way * 1.01 * bow / (0.5 * chord))
 
 
 def test_distances_from_a_closed_chain_are_those_from_many_points_of_it():

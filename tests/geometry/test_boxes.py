@@ -22,6 +22,16 @@ def test_the_sweep_finds_the_pairs_that_asking_all_of_them_finds(seed):
     assert len(found) == len(wanted)
 
 
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize(("touch", "shared", "met"), [(0.0, 0.0, 0), (0.25, 0.125, 0), (0.25, 0.25, 0), (0.25, 0.5, 1)])
+def test_boxes_meet_that_share_more_than_a_layer(axis, way, touch, shared, met):
+    """Two boxes beside each other that share a layer along one axis, in either order; fractions are exact."""
+    least = np.zeros((2, 3))
+    least[1, axis] = way * (4.0 - shared)
+    assert len(list(meeting(least, least + 4.0, touch))) == met
+
+
 def test_boxes_that_only_touch_do_not_meet():
     least = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.999, 0.0, 0.0]])
     assert list(meeting(least, least + 1.0, 1e-6)) == [(0, 2), (1, 2)]

@@ -15,6 +15,8 @@ from cadpanel.geometry.chain_checks import (
     POINT_TOLERANCE,
     SMALLEST_CUT_COSINE,
     SMALLEST_RADIUS,
+    check_chain,
+    check_chain_sheet,
 )
 from cadpanel.geometry.cone_sections import axis_frame
 from cadpanel.geometry.limits import LARGEST_COORDINATE, SMALLEST_LENGTH
@@ -187,10 +189,8 @@ def lengths_between_cuts(shape, cut_points):
     return ends[1] - ends[0]
 
 
-@settings(max_examples=25)
-@given(st.integers(0, 10_000), st.booleans(), st.floats(0.2, 0.5), st.sampled_from([0.11, 0.09, -5.0]))
-def test_cuts_may_come_as_near_to_each_other_within_a_cone_as_at_its_rulings(seed, concave, lean, left):
-    """Wherever over the sweep it is, in cones that widen either way; how much is left is told."""
+def nearing_cuts(seed, concave, lean, left):
+    """A cone whose cuts come as near to each other somewhere, and how far apart they are at its two rulings."""
     random = np.random.default_rng(seed)
     shape = random_panel(seed, chain="cone", half_angle=float(random.uniform(-0.2, 0.2)), concave=concave, length=600.0)
     middle = shape.normals.mean(axis=0) * (-1.0 if concave else 1.0)
@@ -202,13 +202,51 @@ def test_cuts_may_come_as_near_to_each_other_within_a_cone_as_at_its_rulings(see
         apart = 0.5 * (low + high)
         lengths = lengths_between_cuts(shape, [first, first + apart * way])
         low, high = (apart, high) if lengths.min() < left else (low, apart)
-    assume(min(lengths[0], lengths[-1]) > 1.0)
-    shape = replace(shape, cut_points=np.array([first, first + apart * way]))
-    if left > 0.1:
+    return replace(shape, cut_points=np.array([first, first + apart * way])), min(lengths[0], lengths[-1])
+
+
+def passes_or_tells(shape, left):
+    """A cone of which so much is left at its shortest passes if it is enough; how much it is else is told."""
+    if left > SMALLEST_LENGTH:
         shape.check()
         return
     with pytest.raises(PanelError, match=r"cross inside the panel: only .* are left between them on patch 1") as caught:
         shape.check()
     found = re.search("only (.*) mm are left", str(caught.value))
     assert found is not None
-    assert float(found.group(1)) == pytest.approx(left, rel=0.2, abs=2e-3)
+    assert float(found.group(1)) == pytest.approx(left, rel=0.01, abs=2e-3)
+
+
+LEFT = [0.11, 0.09, -5.0]
+
+
+@pytest.mark.parametrize("left", LEFT)
+@pytest.mark.parametrize(("seed", "concave"), [(1, False), (2, False), (3, True)])
+def test_how_much_is_left_between_two_cuts_is_told(seed, concave, left):
+    shape, at_rulings = nearing_cuts(seed, concave, 0.5, left)
+    assert at_rulings > 1.0
+    passes_or_tells(shape, left)
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 10_000), st.booleans(), st.floats(0.2, 0.5), st.sampled_from(LEFT))
+def test_cuts_may_come_as_near_to_each_other_within_a_cone_as_at_its_rulings(seed, concave, lean, left):
+    """Wherever over the sweep it is, in cones that widen either way."""
+    shape, at_rulings = nearing_cuts(seed, concave, lean, left)
+    assume(at_rulings > 1.0)
+    passes_or_tells(shape, left)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(("left", "passes"), [(0.15, True), (0.05, False)])
+def test_the_other_face_of_a_square_sheet_may_come_as_near_to_its_axis_as_any(side, left, passes):
+    """Where its ends lie on the skin's own normals, not in the planes that cut the skin."""
+    bend = folded_panel(radius=side * 10.0, sweep=side * 1.2).squared(-side * 3.0)
+    away = bend.offset(-side * (10.0 - left))
+    if passes:
+        check_chain_sheet(bend, away, 10.0 - left)
+    else:
+        with pytest.raises(PanelError, match="thicker than the radius of patch 2 allows, 10 mm at its tightest"):
+            check_chain_sheet(bend, away, 10.0 - left)
+        with pytest.raises(PanelError, match=r"apex of patch 2 falls inside .* comes down to 0.05 mm"):
+            check_chain(away)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.geometry.closest_points import STATIONS, closest_points, stations
+from cadpanel.geometry.closest_points import STATIONS, closest_points, distances_near, stations
 from cadpanel.geometry.conic_chains import ConicChains, conic_chains, followed, followed_twice, inner, seen_from
 from cadpanel.geometry.end_curves import as_chains
 from tests.seams import KINDS
@@ -172,6 +172,40 @@ def test_pieces_join_where_one_begins_within_rounding_of_the_end_of_the_one_befo
             own = columns - piece + column
             chains.curves[:, own] = seen_from(chains.curves[:, own], -share * steps * away)
     assert stations(chains).joins.tolist() == [*wanted.ravel(), False]
+
+
+@pytest.mark.parametrize(("share", "joins"), [(0.9, True), (1.1, False)])
+def test_where_pieces_join_the_steps_next_to_that_place_count(share, joins):
+    """A quarter of a flat ellipse, whose last step is more than twice as long as its first, and a segment after it."""
+    zero, x, y = np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+
+    def gapped(gap):
+        return conic_chains(
+            constant=np.array([[zero, 10.0 * y + np.array([0.0, 0.0, gap])]]),
+            cosine=np.array([[100.0 * x, zero]]),
+            sine=np.array([[10.0 * y, zero]]),
+            weights=np.array([[x, x]]),
+            span=np.array([[zero, -6.0 * x]]),
+            start=np.zeros((1, 2)),
+            turn=np.array([[0.5 * np.pi, 0.0]]),
+            normals=[np.zeros((1, 2, 3))] * 3,
+        )
+
+    reach = stations(gapped(0.0)).reach[0]
+    assert reach[0, -1] > 2.0 * reach[0, 1]
+    assert stations(gapped(share * JOINED * (reach[0, -1] + reach[1, 0]))).joins.tolist() == [False, joins, False]
+
+
+@pytest.mark.parametrize("inside", [0.0, 40.0, 70.0, -200.0])
+@pytest.mark.parametrize("off", [1e-3, -1e-3])
+def test_one_step_from_nearby_leads_to_the_closest_point_of_a_bent_curve(inside, off):
+    """The error of a place goes with its square, and that of a distance with the square of this."""
+    chains = arcs(np.random.default_rng(3), 1, turn=1.0)
+    foot, w = followed(chains.curves, np.array([0.5])), np.array([0.5 + off])
+    radius = np.sqrt(inner(foot, foot))
+    points = foot * (1.0 - inside / 100.0)
+    found = distances_near(chains, np.zeros(1, dtype=np.intp), w, points)
+    assert found == pytest.approx(abs(inside) / 100.0 * radius, abs=1e-8 * radius[0])
 
 
 def test_a_chain_without_length_is_a_point_and_its_pieces_join():

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.geometry.cone_sections import axis_frame, cut_cone, elliptic_section, radius_range
+from cadpanel.geometry.cone_sections import as_pieces, axis_frame, cut_cone, elliptic_section, lifted, radius_range
 from cadpanel.geometry.patches import ConePatch
 from cadpanel.geometry.shape import PanelShape
 from tests.shapes import folded_panel, random_panel
@@ -30,6 +30,54 @@ panels = st.builds(
     concave=st.booleans(),
     mitre=st.just(0.6),
 )
+
+
+@pytest.mark.parametrize("half_angle", [0.3, -0.2, 0.0])
+@pytest.mark.parametrize("sweep", [0.2, 1.4, 3.0, -0.2, -1.4, -3.0])
+@pytest.mark.parametrize("slant", [(0.1, -0.1), (0.2, 0.4), (-0.3, 0.2), (-0.1, -0.5), (0.0, 0.0)])
+def test_a_cone_is_cut_in_the_plane_all_over_its_sweep(half_angle, sweep, slant):
+    """Between the corners, along the generatrices of the angles, at the heights that are told."""
+    radius = math.copysign(900.0, sweep)
+    shape = folded_panel(
+        chain="c",
+        half_angle=half_angle,
+        radius=radius,
+        sweep=sweep,
+        widths=(),
+        turns=(),
+        cut_normals=2 * ((1.0, *slant),),
+    )
+    _, _, frame = cone_of(shape)
+    sections = [
+        elliptic_section(frame, cut_cone(frame, point, normal))
+        for point, normal in zip(shape.cut_points, shape.cut_normals, strict=True)
+    ]
+    for end, section in enumerate(sections):
+        assert 0.0 <= section.start < min(section.stop, 2.0 * math.pi)
+        parameters = np.linspace(section.start, section.stop, 9)
+        points = section.points(parameters)
+        assert points[[0, -1]] == pytest.approx(shape.corners()[end], abs=LENGTH_ERROR)
+        assert (points - shape.cut_points[end]) @ shape.cut_normals[end] == pytest.approx(0.0, abs=LENGTH_ERROR)
+        angles, heights = section.sweep_angles(parameters), section.heights(parameters)
+        assert frame.points(angles, heights) == pytest.approx(points, abs=LENGTH_ERROR)
+        assert abs(section.cosine_axis @ section.sine_axis) < 1e-6
+    pieces = as_pieces(sections)
+    assert pieces.centers == pytest.approx(np.array([section.center for section in sections]))
+    assert pieces.cosine_axes == pytest.approx(np.array([section.cosine_axis for section in sections]))
+    assert pieces.sine_axes == pytest.approx(np.array([section.sine_axis for section in sections]))
+
+
+@pytest.mark.parametrize("lift", [-30.0, 7.0])
+@pytest.mark.parametrize("half_angle", [0.3, -0.2])
+def test_a_parallel_cone_lies_at_the_same_angles_and_heights_along_the_normals(lift, half_angle):
+    _, _, frame = cone_of(folded_panel(half_angle=half_angle))
+    angles, heights = np.linspace(0.0, 1.0, 5), np.linspace(-200.0, 300.0, 5)
+    wanted = frame.points(angles, heights) + lift * frame.normals(angles)
+    assert lifted(frame, lift).points(angles, heights) == pytest.approx(wanted, abs=LENGTH_ERROR)
+
+
+def test_no_arcs_are_an_empty_table():
+    assert as_pieces([]).centers.shape == as_pieces([]).sine_axes.shape == (0, 3)
 
 
 @given(panels, st.integers(0, 1))
@@ -99,9 +147,11 @@ def test_a_cut_as_steep_as_the_cone_is_no_ellipse(tilt, elliptic):
             elliptic_section(frame, cut)
 
 
-def test_a_cut_along_the_axis_is_refused():
+def test_a_cut_along_the_axis_is_refused_and_one_that_leans_a_little_to_it_is_none():
     shape = folded_panel()
     _, _, frame = cone_of(shape)
+    leaning = 0.1 * frame.axis + math.sqrt(0.99) * frame.radial
+    assert cut_cone(frame, shape.cut_points[0], leaning).rise == pytest.approx(0.1)
     with pytest.raises(ValueError, match="does not cross the axis"):
         cut_cone(frame, shape.cut_points[0], frame.radial)
 

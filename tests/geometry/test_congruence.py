@@ -40,5 +40,11 @@ def test_a_mirror_image_is_another_figure():
     assert np.abs(best_motion(FIGURE, mirrored).moved(FIGURE) - mirrored).max() > 100.0
 
 
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0])
+def test_however_small_a_figure_is_it_is_turned(size):
+    there = turned(size * FIGURE, 2.0)
+    assert best_motion(size * FIGURE, there).moved(size * FIGURE) == pytest.approx(there, abs=1e-9 * size)
+
+
 def test_a_point_is_laid_on_a_point():
     assert best_motion(np.zeros((2, 2)), np.ones((2, 2))).moved(np.zeros((2, 2))) == pytest.approx(np.ones((2, 2)))

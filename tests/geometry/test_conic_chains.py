@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cadpanel.geometry.conic_chains import followed, followed_twice
+from cadpanel.geometry.conic_chains import ConicChains, followed, followed_twice, joined
 from cadpanel.geometry.end_curves import as_chains
 from tests.seams import KINDS
 
@@ -17,6 +17,28 @@ def pieces(kind):
     chains = as_chains(curves, curves.corners[:, 0])
     columns = np.arange(SEAMS * curves.patches)
     return curves, chains, columns, np.random.default_rng(5).uniform(0.05, 0.95, len(columns))
+
+
+def numbered(pieces, count, first):
+    """Chains whose columns are told by a number each."""
+    columns = first + np.arange(float(pieces * count))
+    return ConicChains(pieces=pieces, curves=np.tile(columns, (17, 1)), normals=np.tile(-columns, (9, 1)))
+
+
+def test_of_chains_joined_to_longer_ones_the_last_piece_stands_there_again():
+    for chains in (joined(numbered(2, 2, 0), numbered(4, 1, 10)), joined(numbered(4, 1, 10), numbered(2, 2, 0))):
+        short, long = [0, 1, 1, 1, 2, 3, 3, 3], [10, 11, 12, 13]
+        assert chains.pieces == 4
+        assert chains.count == 3
+        assert chains.curves[0].tolist() in (short + long, long + short)
+        assert chains.normals == pytest.approx(-chains.curves[:9])
+    assert joined(numbered(2, 1, 0), numbered(2, 1, 5)).curves[16].tolist() == [0, 1, 5, 6]
+
+
+def test_a_part_of_chains_has_whole_ones():
+    chains = numbered(2, 4, 0)
+    assert chains.part(slice(1, 3)).curves[0].tolist() == [2, 3, 4, 5]
+    assert chains.part(slice(2, None)).normals[8].tolist() == [-4, -5, -6, -7]
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -7,7 +7,7 @@ import pytest
 
 from cadpanel.geometry.corner_parting import Walls, part_at_corners
 from cadpanel.geometry.joints import cut_to_seams, seam_planes, walls_of
-from tests.joined import SIDE, polygon, quadrilaterals, seams
+from tests.joined import SIDE, polygon, quadrilaterals, seams, turned
 
 
 def between(one: Any, other: Any, depth: float) -> float:
@@ -61,6 +61,19 @@ def test_panels_that_meet_without_a_seam_are_set_back_along_a_free_edge():
     part_at_corners(cut, panels, walls, [], 20.0)
     assert between(cut[0], cut[1], 20.0) > -1e-8
     assert [sorted(own) for own in walls] == [["edge 2"], ["edge 0"]]
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("lean", [0.3, -0.3])
+def test_panels_that_pass_each_other_are_left_as_they_are_though_none_is_beyond_a_wall_of_the_other(way, lean):
+    """One reaches over the other by 1 mm, 50 mm above it; both lean, so that their boxes meet."""
+    rotation = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(lean), -np.sin(lean)], [0.0, np.sin(lean), np.cos(lean)]])
+    flat = [square("A", [0.0, 0.0, 0.0]), square("B", [way * (SIDE - 1.0), 0.0, 50.0])]
+    panels = [turned(panel, rotation, np.array([5000.0, -3000.0, 0.0])) for panel in flat]
+    cut: list[Any] = list(panels)
+    part_at_corners(cut, panels, [{}, {}], [], -3.0)
+    assert cut[0] is panels[0]
+    assert cut[1] is panels[1]
 
 
 def test_panels_that_cover_each_other_are_left_as_they_are():

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.special import ellipe, ellipk
 
 from cadpanel.geometry.fixings import TOO_NEAR, FixingRule, clearance, fixings, hole_bending
 from cadpanel.geometry.flat_places import flat_places
@@ -53,7 +55,10 @@ def test_at_corners_the_holes_of_two_edges_are_as_near_to_each_other_as_holes_ma
     assert np.sort(apart.min(axis=1))[:8] == pytest.approx(2.2 * 8.0)
 
 
-@pytest.mark.parametrize(("width", "holes"), [(70.0, 0), (73.0, 1), (85.0, 1), (92.0, 2)])
+@pytest.mark.parametrize(
+    ("width", "holes"),
+    [(70.0, 0), (71.9, 0), (72.1, 1), (85.0, 1), (92.0, 2), (72.0 + RULE.pitch, 2), (72.2 + RULE.pitch, 3)],
+)
 def test_a_short_edge_has_one_hole_in_its_middle_or_none_and_says_so(width: float, holes: int) -> None:
     pattern = unroll(folded_panel(chain="p", widths=(width,), turns=(0.0,)))
     found = fixings(pattern, RULE)
@@ -61,6 +66,27 @@ def test_a_short_edge_has_one_hole_in_its_middle_or_none_and_says_so(width: floa
     assert len(row) == holes
     assert found.short == (() if holes else ("end 0", "end 1"))
     assert np.mean([place[0] for place in row] or [0.5 * width]) == pytest.approx(0.5 * width)
+
+
+def test_a_cylinder_has_the_holes_of_the_flat_panel_that_it_was_rolled_from() -> None:
+    flat, rolled = (
+        fixings(unroll(folded_panel(length=900.0, **numbers)), RULE)
+        for numbers in (
+            {"chain": "p", "widths": (600.0,), "turns": (0.0,)},
+            {"chain": "c", "widths": (), "turns": (), "radius": 300.0, "sweep": 2.0},
+        )
+    )
+    assert rolled.short == flat.short == ()
+    assert [hole.edge for hole in rolled.holes] == [hole.edge for hole in flat.holes]
+    places = np.array([[hole.place for hole in found.holes] for found in (flat, rolled)])
+    assert places[1] == pytest.approx(places[0], abs=1e-9)
+
+
+@pytest.mark.parametrize(("narrower", "rows"), [(0.9, 1), (1.1, 0)])
+def test_a_hole_comes_no_nearer_to_another_edge_than_curves_are_measured_to(narrower: float, rows: int) -> None:
+    width = 2.0 * RULE.distance - narrower * TOO_NEAR
+    pattern = unroll(folded_panel(chain="p", widths=(width,), turns=(0.0,)))
+    assert len({hole.edge for hole in fixings(pattern, RULE).holes}) == rows
 
 
 def test_where_a_strip_is_too_narrow_for_two_rows_the_second_one_is_left_out() -> None:
@@ -82,3 +108,20 @@ def test_what_a_hole_takes_of_a_parallel_surface_is_its_bending_times_the_height
         assert hole_bending(place, middle, 20.0) == pytest.approx(summed, rel=3e-3)
         flat = folded_panel(chain="p", widths=(200.0,), turns=(0.0,))
         assert hole_bending(flat_places(flat, unroll(flat), 0.0)[0], middle, 20.0) == 0.0
+
+
+def test_the_bending_of_a_hole_in_a_cone_is_that_of_a_disc_about_its_apex() -> None:
+    """Over a circle the mean of 1 / r is 2 K / (pi d), d how far its middle is from the apex, K an elliptic integral.
+
+    Added up over radii up to a, with k = a / d, that is 4 d (E(k) - (1 - k^2) K(k)) for the whole disc.
+    """
+    half_angle, diameter = 0.5, 260.0
+    shape = folded_panel(chain="c", widths=(), turns=(), half_angle=half_angle, radius=300.0)
+    pattern = unroll(shape)
+    (place,) = flat_places(shape, pattern, 0.0)
+    apex = place.origin - 300.0 / math.tan(half_angle) * place.along
+    for middle in apex + np.array([[40.0, 250.0], [-200.0, 700.0]]):
+        away = float(np.linalg.norm(middle - apex))
+        square = (0.5 * diameter / away) ** 2
+        whole = 4.0 * away * (ellipe(square) - (1.0 - square) * ellipk(square))
+        assert hole_bending(place, middle, diameter) == pytest.approx(whole / math.tan(half_angle), rel=1e-7)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,15 @@ def test_cones_go_over_into_cylinders(half_angle: float) -> None:
     radii = place.normal_radii(flat)
     level = 300.0 + np.tan(half_angle) * (flat[:, 1] - 500.0)
     assert radii == pytest.approx(level, abs=30.0 * abs(half_angle) + 1e-9)
+
+
+@pytest.mark.parametrize("half_angle", [0.4, -0.4])
+@pytest.mark.parametrize("offset", [0.0, 5.0])
+def test_a_cone_is_bent_as_its_distance_from_the_apex_says(half_angle: float, offset: float) -> None:
+    shape = folded_panel(chain="c", widths=(), turns=(), half_angle=half_angle, radius=600.0)
+    pattern = unroll(shape, offset)
+    (place,) = flat_places(shape, pattern, offset)
+    apex = place.origin - (600.0 + offset) / math.tan(half_angle) * place.along
+    flat = place.origin + np.array([[0.0, 0.0], [300.0, 0.0], [-150.0, 200.0], [80.0, -170.0]])
+    away = np.linalg.norm(flat - apex, axis=-1)
+    assert place.normal_radii(flat) == pytest.approx(abs(math.tan(half_angle)) * away, rel=1e-12)

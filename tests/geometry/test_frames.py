@@ -110,3 +110,16 @@ def test_twists_add(seed):
     x = vectors(seed + 1, 4)
     both = point_velocity(twists.sum(axis=2, keepdims=True), x)
     assert both[..., 0] == pytest.approx(point_velocity(twists, x).sum(axis=-1), abs=1e-13)
+
+
+def test_a_turn_goes_from_the_first_axis_to_the_second_about_the_third():
+    quarter = np.array([0.0, 0.0, 2.0])
+    assert cayley(quarter) == pytest.approx(np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]))
+
+
+@pytest.mark.parametrize("shape", [(), (4,), (4, 5)])
+def test_points_of_any_arrangement_have_the_velocity_of_their_twists(shape):
+    twists, x = np.random.default_rng(1).normal(size=(*shape, 6, 2)), vectors(2, *shape)
+    turning, moving = np.moveaxis(twists[..., :3, :], -1, 0), np.moveaxis(twists[..., 3:, :], -1, 0)
+    expected = np.moveaxis(moving + np.cross(turning, x), 0, -1)
+    assert point_velocity(twists, x) == pytest.approx(expected, abs=ROUNDING)

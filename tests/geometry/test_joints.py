@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cadpanel.geometry.joints import cut_to_seams
+from cadpanel.geometry.joints import cut_to_seams, seam_planes, walls_of
 from cadpanel.geometry.sheet_checks import check_buildable
 from tests.joined import hexagons, quadrilaterals, seams, turned
 
@@ -103,3 +103,16 @@ def test_the_sheet_is_the_same_whichever_of_its_faces_is_the_skin():
 def test_panels_without_seams_stay_as_they_are():
     panels = quadrilaterals(1)
     assert cut_to_seams(panels, [], 20.0, -3.0).shapes == tuple(panels)
+
+
+@pytest.mark.parametrize(("joint", "jointed"), [(0.0, False), (0.1, True), (8.0, True)])
+def test_walls_stand_half_a_joint_behind_their_plane_and_say_whether_there_is_one(joint, jointed):
+    panels = hexagons()
+    found = seams(panels)
+    planes = seam_planes(panels, found)
+    walls = walls_of(len(panels), found, planes, joint)
+    for seam, plane in zip(found, planes, strict=True):
+        own, other = (walls[panel][edge] for panel, edge in zip(seam.panels, seam.edges, strict=True))
+        assert (own.jointed, other.jointed) == (jointed, jointed)
+        assert own.normal == pytest.approx(-other.normal)
+        assert plane.beyond(np.array([own.point, other.point])) == pytest.approx([-0.5 * joint, 0.5 * joint])

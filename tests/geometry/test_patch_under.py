@@ -18,7 +18,7 @@ def fold(first, second, *, name="plane-cone-cone-plane"):
     values = np.zeros((1, len(of.numbers)))
     sweeps = iter((first, second))
     for i, curved in enumerate(of.curved):
-        values[0, of.patch_slice(i)] = (-0.1 if first < 0.0 else 0.1, 0.0, next(sweeps)) if curved else (1.0, 0.0)
+        values[0, of.patch_slice(i)] = (-0.25 if first < 0.0 else 0.25, 0.0, next(sweeps)) if curved else (1.0, 0.0)
     values[0, of.cut_numbers[:, 0]] = -0.5, 0.5
     return of.walk(values, derivatives=False)
 
@@ -100,3 +100,15 @@ def test_half_of_the_turning_is_done_in_the_right_one_of_three_cones_that_begin_
     begin = middle(walked)
     assert begin.patch[0] == patch
     assert walked.edges.b[0, [0, -1]] @ begin.b[0] == pytest.approx(np.cos(0.5 * sum(sweeps)), abs=1e-12)
+
+
+def test_panels_together_have_the_patches_that_each_of_them_has():
+    """Also where they have turned half of their way in different patches."""
+    alone = [fold(first, second) for first, second in ((1.6, 0.01), (0.01, 1.6), (0.8, 0.8))]
+    together = alone[0].feature.walk(np.concatenate([one.values for one in alone]), derivatives=False)
+    assert len(set(middle(together).patch.tolist())) > 1
+    x = np.random.default_rng(1).uniform(-1.5, 1.5, (3, len(alone), 200))
+    found = assign(together, x)
+    for i, one in enumerate(alone):
+        assert found[i].tolist() == assign(one, np.ascontiguousarray(x[:, i : i + 1]))[0].tolist()
+        assert len(set(found[i].tolist())) > 2

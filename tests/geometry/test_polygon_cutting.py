@@ -1,5 +1,6 @@
 """A polygon's walls stand in the planes that were given; edges that go on straight share one."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from cadpanel.errors import PanelError
 from cadpanel.geometry.sheet_checks import check_buildable
+from cadpanel.geometry.vectors import cross, unit
 from tests.instances import random_polygon
 from tests.joined import leaning, polygon
 
@@ -30,14 +32,10 @@ def test_walls_stand_in_their_planes_on_both_faces_and_others_stay(corners, dept
         assert (ends - free.corners[0]) @ free.outward == pytest.approx(0.0, abs=CLOSE)
 
 
-def parted(bend=0.0):
+def parted(bend=0.0, place=900.0):
     """A rectangle whose upper side two neighbours share, with a corner between them that bends by so many mm."""
-    return polygon(
-        "P",
-        np.array(
-            [[0.0, 0.0, 0.0], [2000.0, 0.0, 0.0], [2000.0, 900.0, 0.0], [900.0, 900.0 + bend, 0.0], [0, 900.0, 0.0]]
-        ),
-    )
+    upper = [[2000.0, 900.0, 0.0], [place, 900.0 + bend, 0.0], [0.0, 900.0, 0.0]]
+    return polygon("P", np.array([[0.0, 0.0, 0.0], [2000.0, 0.0, 0.0], *upper]))
 
 
 @pytest.mark.parametrize("bend", [0.0, 3.0, -3.0])
@@ -75,3 +73,28 @@ def test_turning_the_list_of_corners_changes_nothing():
     cut = shape.cut_back({"edge 3": leaning(shape, "edge 3", 7.0, 0.1)}, -3.0)
     same = rolled.cut_back({"edge 1": leaning(rolled, "edge 1", 7.0, 0.1)}, -3.0)
     assert np.roll(same.outline, 2, axis=0) == pytest.approx(cut.outline, abs=CLOSE)
+
+
+def test_two_edges_in_one_line_that_are_not_cut_stay_beside_others_that_are():
+    shape = parted(3.0)
+    cut = shape.cut_back({"edge 0": leaning(shape, "edge 0", 10.0, 0.1)}, -3.0)
+    assert cut.outline[2:] == pytest.approx(shape.outline[2:], abs=CLOSE)
+    assert cut.outline[:2, 1] == pytest.approx(math.hypot(10.0, 1.0))
+
+
+@pytest.mark.parametrize("place", [900.0, 1100.0])
+def test_a_wall_of_two_edges_whose_planes_lie_outside_of_the_panel_stands_at_its_outermost_corner(place):
+    shape = parted(-3.0, place)
+    cut = shape.cut_back({f"edge {i}": leaning(shape, f"edge {i}", -5.0, 0.0) for i in (2, 3)}, -3.0)
+    start, stop = cut.outline[[2, 4]]
+    out = cross(unit(stop - start), shape.normal)
+    assert ((shape.outline - start) @ out).max() == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("distance", [-4.0, 4.0])
+def test_the_wall_of_a_single_edge_stands_in_its_plane_wherever_that_is(distance):
+    shape = parted(3.0)
+    plane = leaning(shape, "edge 1", distance, 0.1)
+    cut = shape.cut_back({"edge 1": plane}, -3.0)
+    for face in (cut, cut.offset(-3.0)):
+        assert plane.beyond(face.edge("edge 1").corners) == pytest.approx(0.0, abs=CLOSE)

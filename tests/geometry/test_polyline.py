@@ -13,6 +13,7 @@ from cadpanel.geometry.polyline import (
     distances_to_curves,
     distances_to_polylines,
     end_tangents,
+    inside_edges,
     interpolate,
 )
 
@@ -162,3 +163,17 @@ def test_feet_are_found_from_points_far_inside_a_bend(off):
     curve, foot = helix(parts, 1.0, 2.0, 0.0), helix(inside, 1.0, 2.0, 0.0)
     found = distances_to_curves(((1.0 - off) * foot)[None], curve[None])
     np.testing.assert_allclose(found[0], off, rtol=0.0, atol=6e-7)
+
+
+def test_points_at_the_height_of_corners_are_inside_or_outside_as_those_beside_them():
+    """A diamond, and a step with level edges, by their edges in any order."""
+    diamond = np.array([[0.0, -1.0], [2.0, 0.0], [0.0, 1.0], [-2.0, 0.0]])
+    step = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [2.0, 1.0], [2.0, 1.25], [0.0, 1.25]])
+    for outline, inside, outside in (
+        (diamond, [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.9]], [[-3.0, 0.0], [3.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]),
+        (step, [[1.0, 1.0], [3.0, 0.9], [1.0, 1.2], [1.9, 1.0]], [[-1.0, 1.0], [3.0, 1.1], [-1.0, 0.0], [5.0, 1.0]]),
+    ):
+        for order in (slice(None), slice(None, None, -1)):
+            edges = outline[order], np.roll(outline[order], -1, axis=0)
+            assert inside_edges(np.array(inside), *edges).all()
+            assert not inside_edges(np.array(outside), *edges).any()

@@ -73,6 +73,8 @@ def test_a_leg_of_which_nothing_is_left_is_refused_with_the_length_that_would_do
     assert tangent_length(RULE, 3.0, 0.5 * math.pi) == pytest.approx(7.0)
     with pytest.raises(PanelError, match="leaves 2 mm behind its fold at side 1; ask for one of at least 10 mm"):
         with_returns(shape, ["side 1"], ReturnRule(length=9.0, inner_radius=4.0), 3.0, "outer")
+    with pytest.raises(PanelError, match="leaves 0 mm behind its fold at side 1; ask for one of at least 10 mm"):
+        with_returns(shape, ["side 1"], ReturnRule(length=6.0, inner_radius=4.0), 3.0, "outer")
     with_returns(shape, ["side 1"], ReturnRule(length=10.0, inner_radius=4.0), 3.0, "outer")
     # As much as the sheet is thick is enough.
     assert leg_behind("N-01", "side 1", ReturnRule(length=10.0, inner_radius=4.0), 3.0, 7.0) == 3.0

@@ -24,3 +24,9 @@ def test_curves_reach_as_far_between_their_points_as_circles_do():
 
 def test_of_no_curves_there_is_nothing():
     assert reach(np.empty((0, POINTS, 3)), np.eye(3))[0].shape == (3, 0)
+
+
+def test_a_curve_square_to_a_direction_reaches_just_as_far_as_it_lies():
+    turns = np.linspace(0.0, 1.0, POINTS)
+    curve = np.stack([np.cos(turns), np.sin(turns), np.full(POINTS, 7.0)], axis=-1)
+    assert np.ravel(reach(curve[None], np.array([[0.0, 0.0, 1.0]]))).tolist() == [7.0, 7.0]

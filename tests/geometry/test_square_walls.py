@@ -112,16 +112,24 @@ def test_a_polygon_keeps_inside_of_both_faces_and_its_edges_keep_their_ways() ->
             leans = 0.5 * (slides[i] + slides[(i + 1) % 4]) @ out
             assert reach[0] == pytest.approx(max(0.0, -depth * leans), abs=LENGTH)
         assert square.posts is None
-    with pytest.raises(PanelError, match=r"of edge \d are left"):
+    with pytest.raises(PanelError, match=r"only 0 mm of edge \d are left"):
         shape.squared(9000.0)
 
 
-def test_where_an_outline_hardly_turns_both_walls_stand_back_alike() -> None:
+@pytest.mark.parametrize("outer", [0.1, 0.2, 0.3])
+def test_where_an_outline_hardly_turns_both_walls_stand_back_as_the_one_that_leans_more(outer: float) -> None:
     flat = [[0.0, 0.0], [500.0, -1e-9], [1000.0, 0.0], [1000.0, 800.0], [0.0, 800.0]]
     outline = np.column_stack([flat, np.zeros(5)])
-    slides = np.column_stack([np.zeros(5), [-0.1, -0.1, -0.1, 0.0, 0.0], np.ones(5)])
+    slides = np.column_stack([np.zeros(5), [-outer, -0.2, outer - 0.4, 0.0, 0.0], np.ones(5)])
     shape = PolygonShape(
         name="A", feature="planar-polygon", outline=outline, normal=np.array([0.0, 0.0, 1.0]), posts=slides
     )
-    assert shape.squared(-10.0).outline[:3, 1] == pytest.approx([1.0, 1.0, 1.0], abs=LENGTH)
+    first, second = 5.0 * (outer + 0.2), 5.0 * (0.6 - outer)
+    assert shape.squared(-10.0).outline[:3, 1] == pytest.approx([first, max(first, second), second], abs=1e-6)
     assert shape.squared(10.0).outline == pytest.approx(outline, abs=LENGTH)
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_the_corners_of_the_other_face_lie_along_the_normals_of_the_skin(depth: float) -> None:
+    square = random_panel(3, chain="cone").squared(depth)
+    assert square.offset(depth).corners() == pytest.approx(square.corners() + depth * square.normals, abs=LENGTH)

@@ -12,6 +12,8 @@ from cadpanel.geometry.returns import ReturnRule
 from cadpanel.geometry.sheet_checks import SkinSide, check_buildable, sheet_depth
 from cadpanel.geometry.skin_mesh import skin_mesh
 from cadpanel.geometry.trays import foldable_edges, folded_tray, is_flat
+from cadpanel.geometry.unroll import unroll
+from cadpanel.geometry.unroll_trays import of_corner
 from tests.shapes import random_panel
 from tests.trays import RULE, THICKNESS, flat, tray
 
@@ -108,3 +110,48 @@ def test_legs_that_face_each_other_come_as_near_as_two_sheets_and_no_nearer() ->
         behind = (point - vertices) @ way
         near.append(behind[behind > 1.5 * THICKNESS].min())
     assert min(near) == pytest.approx(2.0 * THICKNESS, abs=0.01)
+
+
+@pytest.mark.parametrize("edges", [None, ("edge 0",), ("edge 0", "edge 1")])
+def test_a_face_ends_in_corners_of_its_own_between_which_its_edges_run(edges: tuple[str, ...] | None) -> None:
+    for lift in (0.0, -THICKNESS):
+        shape = tray(edges=edges).offset(lift)
+        vertices = shape.vertices()
+        apart = np.linalg.norm(vertices[:, None] - vertices, axis=-1)
+        assert (apart[~np.eye(len(vertices), dtype=bool)] > 0.1).all()
+        for name in shape.edges:
+            ends = shape.edge(name).corners
+            assert np.linalg.norm(ends[:, None] - vertices, axis=-1).min(axis=1) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_plane_with_two_ends_is_folded_like_a_polygon_with_the_same_corners() -> None:
+    chain = random_panel(1, chain="plane").squared(sheet_depth(THICKNESS, "outer"))
+    rows = chain.corners()
+    polygon = replace(
+        flat((0.0,) * 4), outline=np.concatenate([rows[0], rows[1, ::-1]]), normal=chain.normals[0], posts=None
+    )
+    around = tuple(f"edge {place}" for place in range(4))
+    of_chain, of_polygon = (
+        folded_tray(one, edges, RULE, THICKNESS, "outer")
+        for one, edges in ((chain, ("end 0", "side 1", "end 1", "side 0")), (polygon, around))
+    )
+    assert of_chain.vertices() == pytest.approx(of_polygon.vertices(), abs=1e-6)
+    assert of_chain.area() == pytest.approx(of_polygon.area())
+
+
+def test_the_thinnest_sheets_have_reliefs_as_wide_as_they_are_thick() -> None:
+    thin, rule = 0.1, ReturnRule(length=30.0, inner_radius=2.5)
+    panel = flat((0.0,) * 4)
+    shape = folded_tray(panel, foldable_edges(panel, rule, thin, "outer")[0], rule, thin, "outer")
+    assert shape.plan.reliefs == pytest.approx(thin)
+    assert shape.plan.wall_kinds.count("cylinder") == 4
+    assert len(shape.vertices()) == 8 + 8 + 8
+    assert [edge for edge in unroll(shape).edges if of_corner(edge)].count("corner 0") == 1 + 2 + 2
+    reliefs = 0.5 * thin**2 * 4.0 * np.sin(shape.plan.openings / 4.0)
+    mesh = skin_mesh(shape)
+    of_flat = mesh.triangles[mesh.patches == 0]
+    first, second, third = (mesh.points[of_flat[:, corner]] for corner in range(3))
+    area = 0.5 * np.linalg.norm(np.cross(second - first, third - first), axis=-1).sum()
+    x, y = shape.plan.corners - shape.plan.corners[0], np.roll(shape.plan.corners, -1, axis=0) - shape.plan.corners[0]
+    whole = 0.5 * np.linalg.norm(np.cross(x, y).sum(axis=0))
+    assert whole - area == pytest.approx(reliefs.sum(), rel=1e-4)

@@ -178,3 +178,16 @@ def test_panels_of_a_batch_do_not_touch_each_other() -> None:
 def test_where_a_kind_has_no_entry_it_says_so() -> None:
     with pytest.raises(TypeError, match="register one for its class"):
         unroller(object())  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["plane-cone-plane", "plane-cylinder-plane", "cone-spline-4"])
+def test_where_on_its_ruling_a_point_is_told_changes_nothing(name: str) -> None:
+    shape = panels(name, 1)[0]
+    assert isinstance(shape, PanelShape)
+    # A cone's radius is told where the point of its first ruling lies; any other may lie anywhere.
+    slid = np.array([[70.0], [-40.0], [25.0], [10.0], [-15.0]])[: len(shape.points)]
+    slid[[index for index, patch in enumerate(shape.patches) if isinstance(patch, ConePatch)]] = 0.0
+    other = replace(shape, points=shape.points + slid * shape.directions)
+    for share in ([[0.0]], [[0.4]], [[1.0]]):
+        at = np.tile(share, (len(unroll(shape).curves), 1))
+        assert unroll(other).curves.points(at) == pytest.approx(unroll(shape).curves.points(at), abs=1e-8)

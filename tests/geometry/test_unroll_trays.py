@@ -27,6 +27,8 @@ def test_a_blank_has_the_area_of_the_surface_that_keeps_its_lengths(
     # Each piece begins where the last one ends, and edges are told without what belongs to reliefs.
     assert np.abs(np.roll(pattern.curves.start, -1, axis=0) - pattern.curves.stop).max() < 1e-9
     assert list(size.edges) == [f"edge {edge}" for edge in range(4)]
+    folds = len(shape.returns)
+    assert [bend.patch for bend in pattern.bends] == list(range(1, 2 * folds, 2))
     for bend in pattern.bends:
         allowance = bend.sweep * (RULE.inner_radius + k_factor * THICKNESS)
         assert [size.pieces[piece] for piece in bend.at_ends] == pytest.approx([allowance, allowance], rel=1e-12)

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cadpanel.geometry.patches import ConePatch
-from cadpanel.geometry.volume import patch_areas, sheet_volume
+from cadpanel.geometry.volume import patch_areas, quadratic_area, sheet_volume
+from tests.joined import leaning
 from tests.shapes import CHAINS, folded_panel, moved, random_panel
 
 RELATIVE = 1e-13
@@ -69,3 +70,18 @@ def test_every_patch_has_area(shape):
     assert len(areas) == len(shape.patches)
     assert min(areas) > 0.0
     assert all(isinstance(patch, ConePatch) or area > 1.0 for patch, area in zip(shape.patches, areas, strict=True))
+
+
+@given(*4 * [st.floats(-10.0, 10.0)])
+def test_of_a_quadratic_both_ends_and_the_mean_tell_all(constant, slope, bend, share):
+    near, far, mean = constant, constant + slope + bend, constant + slope / 2.0 + bend / 3.0
+    assert quadratic_area(near, far, mean, share) == pytest.approx(constant + slope * share + bend * share**2, abs=1e-9)
+
+
+def test_under_a_leaning_side_a_bent_cylinder_is_as_large_as_many_thin_layers():
+    shape = folded_panel(chain="c", widths=(), turns=(), radius=60.0, sweep=1.2)
+    planes = {f"side {side}": leaning(shape, f"side {side}", 5.0, 1.2 - 1.5 * side) for side in (0, 1)}
+    cut = shape.cut_back(planes, 40.0)
+    steps = 40.0 * (np.arange(4000) + 0.5) / 4000
+    layers = sum(cut.offset(float(step)).area() for step in steps) * 40.0 / 4000
+    assert sheet_volume(cut, 40.0, "inner") == pytest.approx(layers, rel=1e-9)

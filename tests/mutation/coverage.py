@@ -6,11 +6,14 @@ import json
 import sys
 from collections.abc import Collection, Generator, Mapping
 from dataclasses import dataclass, field
+from itertools import accumulate
 from pathlib import Path
 from types import CodeType, FrameType
 
 import pytest
 from hypothesis import Phase, settings
+
+from tests.mutation.mutants import Mutant
 
 Calls = dict[str, list[int]]  # by file, the first lines of the functions that were called
 
@@ -51,7 +54,8 @@ class Recorder:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.seconds[report.nodeid] = self.seconds.get(report.nodeid, 0.0) + report.duration
 
-    def pytest_sessionfinish(self) -> None:
+    def write(self) -> None:
+        """Leave what was noted for `Coverage.of`."""
         self.out.write_text(json.dumps({"calls": self.calls, "seconds": self.seconds}), encoding="utf-8")
 
 
@@ -80,8 +84,31 @@ class Coverage:
     seconds: Mapping[str, float]
 
     @classmethod
-    def read(cls, path: Path) -> Coverage:
-        return cls(**json.loads(path.read_text(encoding="utf-8")))
+    def of(cls, folder: Path) -> Coverage:
+        """What all recorders left in a folder."""
+        calls: dict[str, Calls] = {}
+        seconds: dict[str, float] = {}
+        for path in folder.glob("calls-*.json"):
+            noted = json.loads(path.read_text(encoding="utf-8"))
+            calls |= noted["calls"]
+            seconds |= noted["seconds"]
+        return cls(calls=calls, seconds=seconds)
+
+    def tests_for(self, mutant: Mutant, most: float = 0.0) -> list[str]:
+        """The tests that may fail for a change, those first that call the changed function and take least.
+
+        Args:
+            mutant: the change.
+            most: seconds that they may take together; 0 for no limit.
+        """
+        first = self.tests_of(mutant.path, mutant.function)
+        more = self.tests_of(mutant.path, (0, 0))
+        found = [*self._quickest(first), *self._quickest((more | self.beside(more | first)) - first)]
+        taken = accumulate(self.seconds.get(test, 0.0) for test in found)
+        return [test for test, so_far in zip(found, taken, strict=True) if not most or so_far <= most]
+
+    def _quickest(self, tests: Collection[str]) -> list[str]:
+        return sorted(tests, key=lambda test: (self.seconds.get(test, 0.0), test))
 
     def tests_of(self, path: str, function: tuple[int, int]) -> set[str]:
         """The tests that call what stands between two lines; for (0, 0) those that call anything in the file."""

@@ -12,11 +12,11 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 from py_compile import PycInvalidationMode
-from typing import Literal
 
 import pytest
 
-Outcome = Literal["survived", "killed", "timeout"]
+from tests.mutation.session import Outcome
+
 # Loaded once, before anything is forked: what takes long to load and is not under test.
 LIBRARIES = ("numpy", "scipy.interpolate", "scipy.optimize", "scipy.sparse.csgraph", "scipy.spatial", "hypothesis")
 KERNEL = "OCP"
@@ -80,12 +80,12 @@ def _tested(copy: Path, files: Sequence[str], plugins: Sequence[object]) -> int:
     os.dup2(log, 1)
     os.dup2(log, 2)
     os.chdir(copy)
-    os.environ["PYTHONPATH"] = str(copy)
+    os.environ["PYTHONPATH"] = os.environ["PYTEST_DEBUG_TEMPROOT"] = str(copy)
     for name in [name for name in sys.modules if name.partition(".")[0] in UNDER_TEST]:
         del sys.modules[name]
     sys.path[:] = [str(copy), *(path for path in sys.path if path and not Path(path, "tests", "mutation").is_dir())]
     sys.path_importer_cache.clear()
-    words = ["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={copy / 'tmp'}", f"--rootdir={copy}"]
+    words = ["-x", "-q", "-s", "-p", "no:cacheprovider", f"--rootdir={copy}"]
     status = int(pytest.main([*words, *files], plugins=list(plugins)))
     loaded = getattr(sys.modules.get("cadpanel"), "__file__", None)
     return status if loaded is None or Path(loaded).is_relative_to(copy) else NO_COPY

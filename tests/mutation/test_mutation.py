@@ -111,6 +111,49 @@ def test_weak_tests_leave_survivors_and_strong_ones_none(checkout):
     assert (checkout / "cadpanel" / "slope.py").read_text().count("*") == 1
 
 
+KINDS = """from functools import cache
+
+STEEP = 2 * 1.5
+
+
+class Slope:
+    def __init__(self, run):
+        self.run = run
+
+    @property
+    def half(self):
+        def part(of):
+            return of / 2
+
+        return part(self.run)
+
+
+@cache
+def doubled(run):
+    return run * 2
+"""
+
+TEST_OF_KINDS = """import pytest
+from cadpanel.slope import STEEP, Slope, doubled
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_kinds(number):
+    assert (STEEP, Slope(3.0).half, doubled(4.0))[number] == (3.0, 1.5, 8.0)[number]
+"""
+
+
+@thorough
+def test_changes_are_noticed_in_methods_inner_and_kept_functions_and_outside_of_all(checkout):
+    (checkout / "cadpanel" / "slope.py").write_text(KINDS)
+    for left_out, survivor in ((None, None), (0, "STEEP"), (1, "return of"), (2, "return run")):
+        chosen = TEST_OF_KINDS.replace("range(3)", str([number for number in range(3) if number != left_out]))
+        (checkout / "tests" / "test_slope.py").write_text(chosen)
+        answer = run(checkout)
+        assert f"{'0' if survivor is None else '1'} survived" in answer.stdout, answer.stdout + answer.stderr
+        assert survivor is None or survivor in answer.stdout
+
+
 def test_tests_that_fail_as_they_are_are_told(checkout):
     (checkout / "tests" / "test_slope.py").write_text(TEST.replace("6.0", "7.0"))
     answer = run(checkout)

@@ -24,11 +24,17 @@ from cadpanel.setting import options_of
 from cadpanel.terms.limits.catalogue import LIMITS
 from cadpanel.terms.limits.corner_drift import DriftAcross, DriftAlong, DriftTerm
 from cadpanel.terms.limits.flange_width import FlangeWidth, WidthTerm
+from cadpanel.terms.limits.kink import Kink
 from cadpanel.terms.limits.limit import Limit
 from cadpanel.terms.limits.lower_bound import LackTerm
 from cadpanel.terms.limits.min_radius import MinRadius, RadiusTerm
+from cadpanel.terms.limits.outline_drift import DriftOutline
+from cadpanel.terms.limits.seam_level import SeamLevel
+from cadpanel.terms.limits.seam_turn import SeamTurn
 from tests.chains import FEATURES, made_problem, mixed_unknowns
-from tests.delivered import fitted
+from tests.columns import column
+from tests.delivered import fitted, strip
+from tests.known_panels import posed
 
 every_limit = pytest.mark.parametrize("limit", LIMITS, ids=lambda limit: limit.name)
 ASKED = [limit for limit in LIMITS if limit.asked]
@@ -229,3 +235,32 @@ def test_shares_of_a_length_are_asked_for_in_percent_within_the_limits_own_range
     for share in (0.99 * limit.least, 1.01 * limit.most):
         with pytest.raises(SettingsError, match=r"--it must be between 0\.01 and 50 percent of the panel's length"):
             option.read("--it", 100.0 * share)
+
+
+UPPER = [limit for limit in ASKED if not limit.at_least]
+
+
+def radii(limit: Limit, allowed: float, margin: float) -> list[Array]:
+    """How far vectors may reach in every term that a limit holds of a strip, in the solver's unit."""
+    level = limit.name == SeamLevel.name
+    both = {limit.name: allowed, DriftAlong.name: allowed}  # drifts along and across are held together
+    problem, _ = (
+        posed(column(rows=2, columns=4), FitSettings(feature="cone")) if level else posed(strip(), FitSettings())
+    )
+    return [np.asarray(term.hold.radius) for term in limit.held(problem, both, margin)]
+
+
+@pytest.mark.parametrize("limit", UPPER, ids=lambda limit: limit.name)
+def test_a_margin_holds_a_limit_as_if_less_by_it_were_allowed(limit: Limit) -> None:
+    allowed = min(limit.default, 0.5 * limit.most)
+    with_margin, without = radii(limit, allowed, 0.2), radii(limit, 0.8 * allowed, 0.0)
+    assert len(with_margin) == len(without) > 0
+    for one, other, whole in zip(with_margin, without, radii(limit, allowed, 0.0), strict=True):
+        assert one == pytest.approx(other, rel=1e-12)
+        assert (one < 0.9 * whole).all()
+
+
+@pytest.mark.parametrize("limit", [Kink(), SeamTurn(), SeamLevel(), DriftOutline()], ids=lambda limit: limit.name)
+def test_what_may_be_as_large_as_it_likes_is_not_held(limit: Limit) -> None:
+    assert radii(limit, 0.999 * limit.most, 0.0)
+    assert radii(limit, limit.most, 0.0) == []

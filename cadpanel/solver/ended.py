@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ class Limits:
         steps: at most.
         feasibility: by which share a vector may be too long.
         least_cost: below which nothing is left to gain; one for each component (components,), or one for all.
+        idle: so many steps may bring what does not hold no nearer to holding.
         patience: for so many steps what may give way waits for what must hold; of thousands of panels one is always
             over, and waiting for it takes longer than it saves.
     """
@@ -26,6 +28,7 @@ class Limits:
     steps: int = 100
     feasibility: float = 1e-9
     least_cost: Array | float = 0.0
+    idle: float = math.inf
     patience: int = 0
 
 

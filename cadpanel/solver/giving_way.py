@@ -25,6 +25,8 @@ from cadpanel.solver.stop import Stop
 _CLOSE, _TRIES = 1.05, 20
 # Steps at most for one factor, from the last one that held; no more than this is gained by a single one.
 _STEPS, _MOST_NARROWED = 80, 1.7
+# After so many that bring it no nearer, what is narrower is given up; and what must hold where nothing can give way.
+IDLE = 20
 # Steps at most where it goes on from an end: a dozen do, or none will, and it has to begin anew.
 _RESUMED = 30
 # Steps after it was told to end.
@@ -129,6 +131,7 @@ class _Search:
     ) -> None:
         self._model, self._limits, self._elsewhere, self._tell = model, limits, elsewhere, tell
         self._blocks = Components.of(model.pattern)
+        self._gives_way = any(one.hold.gives_way for one in model.held)
         self._most_cost = most_cost
         self._asked: Array | float = 1.0
         self.steps, self.told = 0, False
@@ -166,6 +169,8 @@ class _Search:
 
     def _opened(self, start: Array, first: Ended, rest: BoolArray) -> Ended:
         """What holds with the narrowest distances in those components that do not hold them as they are."""
+        if not self._gives_way:
+            return first if self._elsewhere is None else self._brought_back(first, first.now.unknowns, rest)
         with _AskedNothing(self._model, self._blocks) as self._asked:
             kept = first.mixed(self._steps_from(start, _FREE, rest, self._few(_STEPS)), rest, self._blocks)
             kept = self._brought_back(kept, first.now.unknowns, rest)
@@ -196,7 +201,8 @@ class _Search:
             if self.told or not tried.any():
                 break
             trial = np.maximum(np.sqrt(least * widest), widest / _MOST_NARROWED)
-            end = self._steps_from(kept.best.unknowns, trial, tried, self._few(_STEPS))
+            few = replace(self._few(_STEPS), idle=IDLE)
+            end = self._steps_from(kept.best.unknowns, trial, tried, few)
             reached = trial * end.best.excess
             nearer = tried & (end.best.firm <= _HOLDS) & (reached < widest)
             self.costly |= nearer & ~self._cheap(end.best)

@@ -45,6 +45,8 @@ _GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
+# What exceeds its distances by as much as this share of what it did has made no headway.
+_NEARER = 0.95
 # Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless
 # it is this many times too long.
 _FIRMLY, _FIRM_YET = 1e-3, 1.5
@@ -119,6 +121,7 @@ class _Run:
         self.vectors_held = np.bincount(self.of.label, minlength=count).astype(np.float64)
         self.growth, self.lag = np.full(count, FIRST_GROWTH), np.full(count, _LAG)
         self.anew, self.waited = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
+        self.since, self.nearest = np.zeros(count, dtype=np.intp), np.full((2, count), np.inf)
         self.scales = self.model.lengths[:, None] ** self.model.powers
         self.merit = Merit(model, self.blocks, self.held)
         if after is None:
@@ -170,6 +173,7 @@ class _Run:
             wedged = self.goes_on & (self.damping >= _WEDGED) & (self.anew < _ANEW)
             if wedged.any():
                 self._begin_anew(wedged)
+            self._give_up()
             if tell is not None:
                 beyond = np.maximum(self.now.firm, self.now.excess * self.ease / asked)[self.moving].max()
                 stopped = not tell(steps, float(beyond), self.place.point.cost)
@@ -183,6 +187,16 @@ class _Run:
             barriers=self.barriers,
             mu=self.mu,
             damping=self.damping,
+        )
+
+    def _give_up(self) -> None:
+        """End where something does not hold, and too many steps have brought it no nearer."""
+        beyond = np.maximum([self.best.firm, self.best.excess], 1.0) - 1.0
+        nearer = (beyond < _NEARER * self.nearest).any(axis=0)
+        self.since = np.where(nearer, 0, self.since + 1)
+        self.nearest = np.where(nearer, beyond, self.nearest)
+        self.goes_on = self.goes_on & ~(
+            (self.since >= self.limits.idle) & (beyond > self.limits.feasibility).any(axis=0)
         )
 
     def _step(self) -> None:

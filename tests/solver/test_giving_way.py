@@ -277,3 +277,11 @@ def test_linear_systems_of_all_that_was_tried_are_counted():
         for extra in (5, 1005)
     ]
     assert counts[1] - counts[0] == 1000
+
+
+def test_where_nothing_can_give_way_what_must_hold_is_tried_once():
+    """The same steps again would end at the same place; elsewhere is another matter."""
+    stuck = solve(around_the_middle())
+    once = interior_point(around_the_middle(), np.zeros((1, 1)), Limits())
+    assert stuck.iterations == once.steps
+    assert np.array_equal(stuck.unknowns, once.best.unknowns)

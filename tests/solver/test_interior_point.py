@@ -231,3 +231,20 @@ def test_what_may_give_way_waits_while_what_must_hold_exceeds_its_distance_by_a_
     run._narrow(nothing, nothing, np.ones(1), np.ones(1))
     assert run.waited.tolist() == [waits]
     assert (run.widest < widest).tolist() == [not waits]
+
+
+@pytest.mark.parametrize("idle", [5, 12])
+def test_what_comes_no_nearer_to_holding_is_given_up_and_what_holds_goes_on(idle):
+    """A chain whose ends must be too far apart; beside it what can be held ends where it would without."""
+    chains = []
+    for apart in (6.0, 0.8):
+        chain = held_chain(np.array([[-0.5 * apart, 0.0], [0.5 * apart, 0.0]]), 1.0)
+        near = Hold(np.full((2, 1), 0.01), weight=0.0)
+        chain.held += (HeldBatch(near, chain.targets[:, None], (np.arange(2),)),)
+        chains.append(chain)
+    both = side_by_side(*chains)
+    most, few = (interior_point(both, both.targets.copy(), Limits(least_cost=1e-9, idle=i)) for i in (np.inf, idle))
+    assert idle < few.steps < most.steps
+    assert few.settled.tolist() == most.settled.tolist() == [False, True]
+    assert few.best.excess[0] > 1.0
+    assert few.best.unknowns[2:] == pytest.approx(most.best.unknowns[2:], abs=1e-9)

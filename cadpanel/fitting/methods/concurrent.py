@@ -114,6 +114,7 @@ def _hold_seams(
     named: list[tuple[str, HeldTerm]] = [*(("gap", term) for term in seams_held(problem, settings, begin)), *limits]
     model = HeldObjective(problem, [problem.deviation], [term for _, term in named])
     everywhere = np.ones(model.pattern.components, dtype=bool)
+    asked = [term.hold.radius for term in model.held]
 
     def elsewhere(panels: BoolArray, now: Array) -> tuple[Array, int]:
         but = [name for name, term in limits if term.hold.gives_way]
@@ -143,7 +144,7 @@ def _hold_seams(
     if any(isinstance(term, KinkTerm) for term in model.held) and Stop.TOLD not in found.stopped:
         missed = np.array([stop not in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         if missed.any():
-            found = less_kinked(problem, model, found, settings, missed)
+            found = less_kinked(problem, model, found, begin, asked, settings, missed)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
     if not found.held:
         return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found))

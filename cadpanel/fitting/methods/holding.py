@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 
@@ -17,7 +18,7 @@ from cadpanel.fitting.settings import FitSettings
 from cadpanel.fitting.shapes import panel_shapes
 from cadpanel.solver.components import Components
 from cadpanel.solver.ended import Limits
-from cadpanel.solver.giving_way import Elsewhere, HeldSolution, hold_or_give_way
+from cadpanel.solver.giving_way import IDLE, Elsewhere, HeldSolution, hold_or_give_way
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.arc_gap import ArcGap
 from cadpanel.terms.corner_gap import CornerGap
@@ -101,15 +102,21 @@ def tighten(terms: Sequence[HeldTerm], state: State, excess: Mapping[str, Array]
         excess: (seams,) what was measured along seams over what is allowed, of the gap, its parts and kinks.
     """
     shares = {what: np.where(over > 1.0, _AIM / np.maximum(over, 1.0), 1.0) for what, over in excess.items()}
+    look_again(terms, state)
     for term in terms:
-        if isinstance(term, PartedGap | ArcGap):
-            term.straighten(state)
         if isinstance(term, PartedGap):
             term.hold.tighten(np.min([shares[part] for part in term.parts], axis=0)[term.seams.index])
         elif isinstance(term, KinkTerm):
             term.hold.tighten(shares[Kink.name][term.seams.index])
         elif isinstance(term, CornerGap | ArcGap | MixedGap):
             term.hold.tighten(shares["gap"][term.seams.index])
+
+
+def look_again(terms: Sequence[HeldTerm], state: State) -> None:
+    """Look at seams as they run in a state from now on."""
+    for term in terms:
+        if isinstance(term, PartedGap | ArcGap):
+            term.straighten(state)
 
 
 def prices(
@@ -186,7 +193,7 @@ def held_within(
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    limits = Limits(least_cost=lengths * EXACT**2)
+    limits = Limits(least_cost=lengths * EXACT**2, idle=math.inf if costly else IDLE)
     return hold_or_give_way(
         model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
     )

@@ -33,14 +33,14 @@ def test_what_comes_nearer_to_what_is_asked_for_is_kept_and_what_must_hold_holds
     asked = [term.hold.radius.copy() for term in model.held]
     stuck = HeldSolution(interior_point(model, model.starting_from(start), Limits(steps=0)), (Stop.STALLED,), 7)
     everywhere = np.ones(1, dtype=bool)
-    found = less_kinked(problem, model, stuck, settings, everywhere)
+    found = less_kinked(problem, model, stuck, start, asked, settings, everywhere)
     assert largest(problem, found.unknowns, settings) < 0.9 * largest(problem, stuck.unknowns, settings)
     assert found.end.best.firm.max() <= 1.0 + 1e-5
     assert found.stopped == (Stop.STALLED,)
     assert found.iterations > stuck.iterations
     # What is asked for is the same as before, and what was found is no worse than itself.
     assert all(np.array_equal(term.hold.radius, radius) for term, radius in zip(model.held, asked, strict=True))
-    again = less_kinked(problem, model, found, settings, ~everywhere)
+    again = less_kinked(problem, model, found, start, asked, settings, ~everywhere)
     assert np.array_equal(again.unknowns, found.unknowns)
 
 

@@ -25,7 +25,7 @@ from cadpanel.solver.stop import Stop
 _CLOSE, _TRIES = 1.05, 20
 # Steps at most for one factor, from the last one that held; no more than this is gained by a single one.
 _STEPS, _MOST_NARROWED = 80, 1.7
-# After so many that bring it no nearer, what is narrower is given up; and what must hold where nothing can give way.
+# After so many that bring it no nearer, what must hold is given up where nothing can give way.
 IDLE = 20
 # Steps at most where it goes on from an end: a dozen do, or none will, and it has to begin anew.
 _RESUMED = 30
@@ -201,8 +201,7 @@ class _Search:
             if self.told or not tried.any():
                 break
             trial = np.maximum(np.sqrt(least * widest), widest / _MOST_NARROWED)
-            few = replace(self._few(_STEPS), idle=IDLE)
-            end = self._steps_from(kept.best.unknowns, trial, tried, few)
+            end = self._steps_from(kept.best.unknowns, trial, tried, self._few(_STEPS))
             reached = trial * end.best.excess
             nearer = tried & (end.best.firm <= _HOLDS) & (reached < widest)
             self.costly |= nearer & ~self._cheap(end.best)

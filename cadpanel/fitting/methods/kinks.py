@@ -2,16 +2,16 @@
 
 Distances that give way are widened by one factor, and kinks are held at points of a seam alone: what ends at 1.3 times
 its gaps and kinks there may have more between them. A kink that costs gaps and comes out larger than without a
-limit helps nobody. Where kinks are not held, the least that gaps leave is looked for, from the same start and by the
-same steps whatever was asked for: so who asks for less than that gets it, and who asks for more does not get more than
-he asked. Whatever exceeds least what is asked for, measured along whole seams, is kept.
+limit helps nobody. Where kinks are not held, fits are tried in which they may be larger and gaps not; where these do
+not hold either, the least that gaps leave is looked for, from the same start and by the same steps whatever was asked
+for: so who asks for less than that gets it, and who asks for more does not get more than he asked. Whatever exceeds
+least what is asked for, measured along whole seams, is kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from cadpanel.solver.interior_point import interior_point
 from cadpanel.solver.stop import Stop
 from cadpanel.terms.limits.kink import KinkTerm
 
+# Fits tried, of so many steps each; the first one holds no kinks.
+_TRIES, _STEPS = 3, 80
+_ANY = 1e4
 # Exceeds what must be held beyond rounding.
 _FIRM = 1.0 + 1e-5
 # Nobody asks for less than this share of a kink that somebody asks for: the least there is is looked for.
@@ -54,23 +57,45 @@ def less_kinked(
         where: (components,) which components.
     """
     blocks = Components.of(model.pattern)
-    limits = Limits(least_cost=0.5 * blocks.total(model.lengths**2) * EXACT**2)
-    with _kinks_alone_give_way(problem, model, asked, start, found.unknowns):
-        begin, none = model.starting_from(start), replace(limits, steps=0)
-        search = hold_or_give_way(model, begin, none, only=where)
-    now, reached = (_largest(problem, one.unknowns, settings, blocks) for one in (search, found))
-    better = where & (search.end.best.firm <= _FIRM) & (now < reached)
-    least, steps = search.unknowns, search.iterations
-    if (better & (now <= 1.0)).any():
-        # At less deviation, where that still holds along whole seams what is asked for.
-        again = interior_point(model, least, limits, only=better & (now <= 1.0))
-        holds = again.best.firm <= _FIRM
-        holds &= better & (now <= 1.0) & (_largest(problem, again.best.unknowns, settings, blocks) <= 1.0)
-        least, steps = np.where(blocks.each(holds), again.best.unknowns, least), steps + again.steps
+    kept, reached, steps = _tried_wider(problem, model, found, settings, where)
+    searched = where & (reached > 1.0)
+    if searched.any():
+        none = Limits(steps=0, least_cost=0.5 * blocks.total(model.lengths**2) * EXACT**2)
+        with _kinks_alone_give_way(problem, model, asked, start, found.unknowns):
+            search = hold_or_give_way(model, model.starting_from(start), none, only=searched)
+        now, steps = _largest(problem, search.unknowns, settings, blocks), steps + search.iterations
+        nearer = searched & (search.end.best.firm <= _FIRM) & (now < reached)
+        kept, reached = np.where(blocks.each(nearer), search.unknowns, kept), np.where(nearer, now, reached)
+    better = where & (reached < _largest(problem, found.unknowns, settings, blocks))
     # As it is beside what is held.
-    end = interior_point(model, np.where(blocks.each(better), least, found.unknowns), Limits(steps=0))
+    end = interior_point(model, kept, Limits(steps=0))
     told = HeldSolution(end, (Stop.STALLED,) * blocks.count, steps)
     return found.mixed(told, better, blocks)
+
+
+def _tried_wider(
+    problem: Problem, model: HeldObjective, found: HeldSolution, settings: FitSettings, where: BoolArray
+) -> tuple[Array, Array, int]:
+    """Go on from what was found with kinks that may be larger: unknowns, (components,) their excess, and steps."""
+    blocks = Components.of(model.pattern)
+    terms = [term for term in model.held if isinstance(term, KinkTerm)]
+    radii = [term.hold.radius for term in terms]
+    kept, reached = found.unknowns, _largest(problem, found.unknowns, settings, blocks)
+    wider, least, steps = np.full(blocks.count, _ANY), np.ones(blocks.count), 0
+    for _ in range(_TRIES):
+        for term, radius in zip(terms, radii, strict=True):
+            term.hold.radius = radius * wider[blocks.label[term.blocks[0]]][:, None]
+        end = interior_point(model, model.starting_from(kept), Limits(steps=_STEPS), only=where)
+        steps += end.steps
+        now = _largest(problem, end.best.unknowns, settings, blocks)
+        nearer = where & (end.best.firm <= _FIRM) & (now < reached)
+        kept = np.where(blocks.each(nearer), end.best.unknowns, kept)
+        reached = np.where(nearer, now, reached)
+        least = np.where(nearer, least, np.maximum(least, np.minimum(wider, reached)))
+        wider = np.sqrt(least * np.maximum(reached, least))
+    for term, radius in zip(terms, radii, strict=True):
+        term.hold.radius = radius
+    return kept, reached, steps
 
 
 @contextmanager

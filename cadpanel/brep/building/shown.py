@@ -18,19 +18,29 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Solid
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.facets import farthest
 from cadpanel.brep.kernel.kept import kept_binary
 from cadpanel.brep.kernel.shapes import edges_of, faces_of, shapes_of
 from cadpanel.geometry.triangles import shown_deflection
 
 # Between neighbouring triangles, as FreeCAD asks for it.
 _WIDEST_ANGLE = math.radians(28.65)
+# Shares of the distance that the mesher is asked for, the largest that does: it exceeds what it is asked for here and
+# there, as it looks at the middle of triangles alone, and what is shown has to be as close as it says.
+_CLOSER = (0.6, 0.3, 0.15, 0.075)
+_WITHIN = 0.95
 
 
 def shown_binary(solid: TopoDS_Solid) -> bytes:
     """A solid as FreeCAD keeps it, with its triangles; the solid itself is left without."""
     vertices = [BRep_Tool.Pnt_s(TopoDS.Vertex_s(vertex)).Coord() for vertex in shapes_of(solid, TopAbs_VERTEX)]
-    # Vertices are among the corners of triangles, which so lie at least as close as they say.
-    BRepMesh_IncrementalMesh(solid, shown_deflection(np.array(vertices)), False, _WIDEST_ANGLE, False)
+    # Vertices are among the corners of triangles, whose distance so is at least theirs.
+    asked, faces = shown_deflection(np.array(vertices)), faces_of(solid)
+    for share in _CLOSER:
+        BRepTools.Clean_s(solid)
+        BRepMesh_IncrementalMesh(solid, share * asked, False, _WIDEST_ANGLE, False)
+        if max(farthest(face, _WITHIN * asked) for face in faces) <= _WITHIN * asked:
+            break
     say_deflection(solid, shown_deflection(corners_of(solid)))
     data = kept_binary(solid, triangles=True)
     BRepTools.Clean_s(solid)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from cadpanel.brep.isolation.requests import HEADER, framed
 
-POSSIBLE = sys.platform.startswith("linux")
+POSSIBLE = sys.platform.startswith("linux") and hasattr(os, "fork")
 """Elsewhere a copy of a process that has loaded a system's libraries may not run."""
 _DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux's prctl
 
@@ -74,7 +74,7 @@ class Channel:
 
 def processors() -> int:
     """How many processors this process may use at once."""
-    return len(os.sched_getaffinity(0)) if POSSIBLE else os.cpu_count() or 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager

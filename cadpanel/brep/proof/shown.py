@@ -18,14 +18,13 @@ from typing import NamedTuple
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_Plane
 from OCP.Poly import Poly_Triangulation
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array, BoolArray, IntArray
-from cadpanel.brep.faces.surface_batch import kernel_values
+from cadpanel.brep.building.facets import NEXT, middles, near, on
 from cadpanel.brep.kernel.shapes import edges_of, faces_of
 from cadpanel.geometry.triangles import shown_deflection
 
@@ -35,7 +34,6 @@ _OFF = 1e-6
 _SAID_SHARE = 1e-9
 # Of the products that make a triangle's area, which it has at least, or rounding might have turned it over.
 _LEAST_SHARE = 1e-12
-_NEXT = [1, 2, 0]
 
 Coordinates = tuple[float, float, float]
 
@@ -47,7 +45,7 @@ class _Facets(NamedTuple):
         points: (n, 3) corners, mm.
         places: (n, 2) their parameters, each on its face's surface.
         corners: (t, 3) of each triangle.
-        seen: (n + 3 t + t, 3) their surfaces at corners, in the middle of sides and of triangles, mm.
+        seen: (n + 3 t + t, 3) their surfaces at corners, and near the middle of sides and of triangles, mm.
     """
 
     points: Array
@@ -89,9 +87,9 @@ def shown_fault(shape: TopoDS_Shape) -> str:
     try:
         if not faces or any(mesh is None for mesh in meshes):
             raise _UntrueError("leave out a face")
-        facets, starts = _facets(faces, meshes)
+        wanted = shown_deflection(_corners(meshes))
+        facets, starts = _facets(faces, meshes, wanted)
         rim = _rim(faces, meshes, starts)
-        wanted = shown_deflection(facets.points)
         _check_said(faces, meshes, wanted)
         _check_facets(facets, wanted)
         _check_rim(facets, rim, wanted)
@@ -100,7 +98,14 @@ def shown_fault(shape: TopoDS_Shape) -> str:
     return ""
 
 
-def _facets(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation]) -> tuple[_Facets, list[int]]:
+def _corners(meshes: Sequence[Poly_Triangulation]) -> Array:
+    """(n, 3) the corners of all triangles, mm."""
+    return np.array([mesh.Node(place).Coord() for mesh in meshes for place in range(1, mesh.NbNodes() + 1)])
+
+
+def _facets(
+    faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation], wanted: float
+) -> tuple[_Facets, list[int]]:
     """The triangles of all faces, and which corner is the first of each face."""
     points, places, corners, seen, starts, count = [], [], [], [], [], 0
     for face, mesh in zip(faces, meshes, strict=True):
@@ -115,21 +120,14 @@ def _facets(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation]) 
         places.append(np.array([mesh.UVNode(place).Coord() for place in own]))
         if not np.isfinite(places[-1]).all():
             raise _UntrueError("have no place on their face")
-        met = places[-1][named]
-        looked_at = np.concatenate([places[-1], 0.5 * (met + met[:, _NEXT]).reshape(-1, 2), met.mean(axis=1)])
-        seen.append(np.split(_on(BRepAdaptor_Surface(face), looked_at), [len(own), len(own) + 3 * len(named)]))
+        surface = BRepAdaptor_Surface(face)
+        beside = near(surface, middles(places[-1], named), middles(np.array(points[-1]), named), wanted)
+        seen.append([on(surface, places[-1]), *np.split(beside, [3 * len(named)])])
         corners.append(named + count)
         starts.append(count)
         count += len(own)
     everywhere = np.concatenate([part[kind] for kind in range(3) for part in seen])
     return _Facets(np.concatenate(points), np.concatenate(places), np.concatenate(corners), everywhere), starts
-
-
-def _on(surface: BRepAdaptor_Surface, places: Array) -> Array:
-    """(n, 3) where a surface is at parameters (n, 2), mm."""
-    if surface.GetType() == GeomAbs_Plane:
-        return kernel_values(surface, places)[:, 0]
-    return np.array([surface.Value(u, v).Coord() for u, v in places.tolist()])
 
 
 def _rim(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation], starts: Sequence[int]) -> _Rim:
@@ -176,8 +174,7 @@ def _check_said(faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulatio
 
 def _check_facets(facets: _Facets, wanted: float) -> None:
     """Corners lie on surfaces, triangles look to one side and are close enough."""
-    met = facets.points[facets.corners]
-    shown = np.concatenate([facets.points, 0.5 * (met + met[:, _NEXT]).reshape(-1, 3), met.mean(axis=1)])
+    shown = np.concatenate([facets.points, middles(facets.points, facets.corners)])
     off = np.linalg.norm(facets.seen - shown, axis=-1)
     if not (off[: len(facets.points)] <= _OFF).all():
         raise _UntrueError("do not lie on their face")
@@ -199,7 +196,7 @@ def _check_rim(facets: _Facets, rim: _Rim, wanted: float) -> None:
         raise _UntrueError("lie farther from an edge than they say")
     bounds = np.where(rim.forward[:, None], rim.sides, rim.sides[:, ::-1])
     # With the boundary run through the other way, too, every side has one that goes back.
-    sides = np.concatenate([*(facets.corners[:, [one, _NEXT[one]]] for one in range(3)), bounds[:, ::-1]])
+    sides = np.concatenate([*(facets.corners[:, [one, NEXT[one]]] for one in range(3)), bounds[:, ::-1]])
     ways, back = (np.sort(one @ [len(facets.points), 1]) for one in (sides, sides[:, ::-1]))
     if not ((np.diff(ways) > 0).all() and (ways == back).all()):
         raise _UntrueError("do not fill their face")

@@ -80,7 +80,7 @@ def no_worse_by_and_by(of: str, limit: str, how: dict[str, str]) -> None:
             assert other.measures.overall_rms <= NO_WORSE * one.measures.overall_rms, told
 
 
-@pytest.mark.parametrize("of", cases(["lip 5"], ["lip 1", "lip 5"]))
+@pytest.mark.parametrize("of", cases([], ["lip 1", "lip 5"]))
 def test_a_kink_that_cannot_be_held_beside_gaps_is_no_larger_where_a_larger_one_was_asked_for(of):
     fits = [cp.fit(strip(of), max_kink=asked) for asked in cases([0.5, 1.0], [0.1, 0.2, 0.5, 1.0, 2.0, 4.0])]
     assert not fits[0].tolerance_met

@@ -20,18 +20,16 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from shutil import rmtree
 from threading import Event, Thread
-
-import numpy as np
 
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.jobs.summary import SUMMARY, read_summary
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
-from tests.benchmarks.delivery import strip
+from tests.benchmarks.strips import long_lip
 
 OUTPUTS = ("step", "flats")
 LOOKED_AT = 0.5
@@ -112,26 +110,9 @@ def _memory_of(process: int) -> float:
 
 
 def lips(regions: int, panels: int, seed: int) -> list[Lip]:
-    """A lip for each region."""
-    random = np.random.default_rng(seed)
-    base = strip(panels)
-
-    def varied(values: Sequence[float], share: float) -> tuple[float, ...]:
-        return tuple(value * (1.0 + share * random.uniform(-1.0, 1.0)) for value in values)
-
-    return [
-        Lip(
-            panels=panels,
-            twist=varied(base.twist, 0.3),
-            plan=base.plan,
-            rise=base.rise,
-            fold=varied(base.fold, 0.05),
-            radius=varied(base.radius, 0.2),
-            lower=varied(base.lower, 0.05),
-            upper=varied(base.upper, 0.05),
-        )
-        for _ in range(regions)
-    ]
+    """A lip for each region, all of them such that default settings hold."""
+    plan, rise = (300.0 / max(panels, 50),), (50.0 / max(panels, 50),)  # not once round, to meet itself
+    return [replace(long_lip(panels, seed * 1000 + region), plan=plan, rise=rise) for region in range(regions)]
 
 
 def measure(folder: Path, regions: int, panels: int, workers: int, seed: int) -> Spent:

@@ -59,6 +59,12 @@ class Recorder:
         self.out.write_text(json.dumps({"calls": self.calls, "seconds": self.seconds}), encoding="utf-8")
 
 
+def let_any_failure_do() -> None:
+    """A failure is enough: the smallest one would be looked for for minutes."""
+    settings.register_profile("found", phases=(Phase.explicit, Phase.generate))
+    settings.load_profile("found")
+
+
 @dataclass(eq=False)
 class Chosen:
     """Runs some of the tests alone, those first that take least: most changes fail one of these."""
@@ -66,9 +72,7 @@ class Chosen:
     seconds: Mapping[str, float]
 
     def pytest_sessionstart(self) -> None:
-        """A failure is enough: the smallest one would be looked for for minutes."""
-        settings.register_profile("found", phases=(Phase.explicit, Phase.generate))
-        settings.load_profile("found")
+        let_any_failure_do()
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-from hypothesis import Phase, settings
 
-from tests.mutation.coverage import Coverage, Recorder
+from tests.mutation.coverage import Coverage, Recorder, let_any_failure_do
 from tests.mutation.in_place import loaded_functions, put_in
 from tests.mutation.mutants import Mutant
 
@@ -50,9 +49,7 @@ class Session:
     _items: dict[str, pytest.Item] = field(default_factory=dict)
 
     def pytest_sessionstart(self) -> None:
-        """A failure is enough: the smallest one would be looked for for minutes."""
-        settings.register_profile("found", phases=(Phase.explicit, Phase.generate))
-        settings.load_profile("found")
+        let_any_failure_do()
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtestloop(self, session: pytest.Session) -> bool:

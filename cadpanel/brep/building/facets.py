@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
@@ -23,12 +25,16 @@ def triangles_of(face: TopoDS_Face) -> Poly_Triangulation | None:
     return mesh
 
 
+def nodes_of(meshes: Sequence[Poly_Triangulation]) -> Array:
+    """(n, 3) the corners of all triangles, mm."""
+    return np.array([mesh.Node(place).Coord() for mesh in meshes for place in range(1, mesh.NbNodes() + 1)])
+
+
 def corners_of(mesh: Poly_Triangulation) -> tuple[Array, Array, IntArray]:
     """(n, 3) corners, mm, (n, 2) their parameters, and (t, 3) which of them each triangle has."""
-    own = range(1, mesh.NbNodes() + 1)
     named = np.array([mesh.Triangle(place).Get() for place in range(1, mesh.NbTriangles() + 1)], dtype=np.intp) - 1
-    points = np.array([mesh.Node(place).Coord() for place in own])
-    return points, np.array([mesh.UVNode(place).Coord() for place in own]), named
+    places = np.array([mesh.UVNode(place).Coord() for place in range(1, mesh.NbNodes() + 1)])
+    return nodes_of([mesh]), places, named
 
 
 def middles(values: Array, named: IntArray) -> Array:

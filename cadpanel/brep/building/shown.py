@@ -18,7 +18,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Solid
 
 from cadpanel.arrays import Array
-from cadpanel.brep.building.facets import farthest
+from cadpanel.brep.building.facets import farthest, nodes_of
 from cadpanel.brep.kernel.kept import kept_binary
 from cadpanel.brep.kernel.shapes import edges_of, faces_of, shapes_of
 from cadpanel.geometry.triangles import shown_deflection
@@ -49,10 +49,7 @@ def shown_binary(solid: TopoDS_Solid) -> bytes:
 
 def corners_of(solid: TopoDS_Solid) -> Array:
     """(n, 3) the corners of a solid's triangles, mm."""
-    meshes = [BRep_Tool.Triangulation_s(face, TopLoc_Location()) for face in faces_of(solid)]
-    return np.array(
-        [mesh.Node(place).Coord() for mesh in meshes for place in range(1, mesh.NbNodes() + 1)], dtype=np.float64
-    )
+    return nodes_of([BRep_Tool.Triangulation_s(face, TopLoc_Location()) for face in faces_of(solid)])
 
 
 def say_deflection(solid: TopoDS_Solid, deflection: float) -> None:

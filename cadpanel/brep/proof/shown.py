@@ -24,7 +24,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cadpanel.arrays import Array, BoolArray, IntArray
-from cadpanel.brep.building.facets import NEXT, middles, near, on
+from cadpanel.brep.building.facets import NEXT, corners_of, middles, near, nodes_of, on
 from cadpanel.brep.kernel.shapes import edges_of, faces_of
 from cadpanel.geometry.triangles import shown_deflection
 
@@ -87,7 +87,7 @@ def shown_fault(shape: TopoDS_Shape) -> str:
     try:
         if not faces or any(mesh is None for mesh in meshes):
             raise _UntrueError("leave out a face")
-        wanted = shown_deflection(_corners(meshes))
+        wanted = shown_deflection(nodes_of(meshes))
         facets, starts = _facets(faces, meshes, wanted)
         rim = _rim(faces, meshes, starts)
         _check_said(faces, meshes, wanted)
@@ -98,31 +98,26 @@ def shown_fault(shape: TopoDS_Shape) -> str:
     return ""
 
 
-def _corners(meshes: Sequence[Poly_Triangulation]) -> Array:
-    """(n, 3) the corners of all triangles, mm."""
-    return np.array([mesh.Node(place).Coord() for mesh in meshes for place in range(1, mesh.NbNodes() + 1)])
-
-
 def _facets(
     faces: Sequence[TopoDS_Face], meshes: Sequence[Poly_Triangulation], wanted: float
 ) -> tuple[_Facets, list[int]]:
     """The triangles of all faces, and which corner is the first of each face."""
     points, places, corners, seen, starts, count = [], [], [], [], [], 0
     for face, mesh in zip(faces, meshes, strict=True):
-        own, placed = range(1, mesh.NbNodes() + 1), TopLoc_Location()
+        placed = TopLoc_Location()
         BRep_Tool.Triangulation_s(face, placed)
         if not placed.IsIdentity() or not mesh.HasUVNodes() or not mesh.NbTriangles():
             raise _UntrueError("have no place on their face")
-        named = np.array([mesh.Triangle(place).Get() for place in range(1, mesh.NbTriangles() + 1)], dtype=np.intp) - 1
+        own, at, named = corners_of(mesh)
         if named.min() < 0 or named.max() >= len(own):
             raise _UntrueError("have corners that there are not")
-        points.append([mesh.Node(place).Coord() for place in own])
-        places.append(np.array([mesh.UVNode(place).Coord() for place in own]))
-        if not np.isfinite(places[-1]).all():
+        if not np.isfinite(at).all():
             raise _UntrueError("have no place on their face")
+        points.append(own)
+        places.append(at)
         surface = BRepAdaptor_Surface(face)
-        beside = near(surface, middles(places[-1], named), middles(np.array(points[-1]), named), wanted)
-        seen.append([on(surface, places[-1]), *np.split(beside, [3 * len(named)])])
+        beside = near(surface, middles(at, named), middles(own, named), wanted)
+        seen.append([on(surface, at), *np.split(beside, [3 * len(named)])])
         corners.append(named + count)
         starts.append(count)
         count += len(own)

@@ -8,7 +8,7 @@ A hole keeps its distance from every edge and from every line at which a bend be
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,12 +96,15 @@ class Hole:
 
 def fixings(pattern: FlatPattern, rule: FixingRule) -> Fixings:
     """The holes of a flat pattern: along every edge, in each patch a row of its own."""
+    outline = _outline(pattern)
     holes: list[Fixing] = []
     short: dict[str, None] = {}
-    for row, places in enumerate(_rows(pattern, rule)):
+    for row, places in enumerate(_rows(pattern, rule, outline)):
         if of_corner(pattern.edges[row]):
             continue
-        clear = [place for place in places if _room(pattern, rule, row, place, holes)]
+        others = [*outline[:row], *outline[row + 1 :], *pattern.tangents]
+        far = _distances(places, others) >= rule.distance - TOO_NEAR
+        clear = [place for place in places[far] if _apart(place, holes, rule)]
         holes += [Fixing(edge=pattern.edges[row], patch=pattern.owners[row], place=place) for place in clear]
         if not len(places) or len(clear) < len(places):
             short[pattern.edges[row]] = None
@@ -110,8 +113,7 @@ def fixings(pattern: FlatPattern, rule: FixingRule) -> Fixings:
 
 def clearance(pattern: FlatPattern, places: Array) -> Array:
     """(m,) how far places (m, 2) are from the nearest edge, or line at which a bend begins or ends, mm."""
-    lines = [*_outline(pattern), *pattern.tangents]
-    return np.asarray(np.min([_distances(places, line) for line in lines], axis=0))
+    return _distances(places, [*_outline(pattern), *pattern.tangents])
 
 
 def hole_bending(place: FlatPlace, middle: Array, diameter: float) -> float:
@@ -129,9 +131,9 @@ def hole_bending(place: FlatPlace, middle: Array, diameter: float) -> float:
     return 0.25 * diameter * float((_WEIGHTS * radii) @ curvature.sum(axis=1)) * 2.0 * math.pi / _TURNS
 
 
-def _rows(pattern: FlatPattern, rule: FixingRule) -> Iterator[Array]:
+def _rows(pattern: FlatPattern, rule: FixingRule, outline: Sequence[Array]) -> Iterator[Array]:
     """For each piece of the outline the middles (m, 2) of its row, evenly along it."""
-    for row, curve in enumerate(_outline(pattern)):
+    for row, curve in enumerate(outline):
         lengths = np.concatenate([[0.0], np.linalg.norm(np.diff(curve, axis=0), axis=-1).cumsum()])
         free = float(lengths[-1]) - 2.0 * rule.from_corner
         if free < 0.0:
@@ -148,11 +150,8 @@ def _rows(pattern: FlatPattern, rule: FixingRule) -> Iterator[Array]:
         yield piece.points(u)[0] + rule.distance * inwards / np.linalg.norm(inwards, axis=-1, keepdims=True)
 
 
-def _room(pattern: FlatPattern, rule: FixingRule, row: int, place: Array, others: list[Fixing]) -> bool:
-    """Whether a hole keeps away from all that is not its own edge, and from other holes."""
-    lines = [line for other, line in enumerate(_outline(pattern)) if other != row] + list(pattern.tangents)
-    if min(float(_distances(place[None], line)[0]) for line in lines) < rule.distance - TOO_NEAR:
-        return False
+def _apart(place: Array, others: Sequence[Fixing], rule: FixingRule) -> bool:
+    """Whether a hole keeps away from other holes."""
     least = LEAST_PITCH * rule.diameter - TOO_NEAR
     return all(float(np.linalg.norm(place - other.place)) >= least for other in others)
 
@@ -164,6 +163,11 @@ def _outline(pattern: FlatPattern) -> list[Array]:
     return [along if bends else along[[0, -1]] for along, bends in zip(points, curved, strict=True)]
 
 
-def _distances(places: Array, line: Array) -> Array:
-    """(m,) distances of places (m, 2) to a polyline."""
-    return np.asarray(distances_to_polylines(places[None], line[None])[0])
+def _distances(places: Array, lines: Sequence[Array]) -> Array:
+    """(m,) distances of places (m, 2) to the nearest of some polylines; those of as many points are taken at once."""
+    nearest = np.full(len(places), np.inf)
+    for count in sorted({len(line) for line in lines}):
+        alike = np.stack([line for line in lines if len(line) == count])
+        shared = np.broadcast_to(places, (len(alike), *places.shape))
+        nearest = np.minimum(nearest, distances_to_polylines(shared, alike).min(axis=0))
+    return nearest

@@ -20,6 +20,7 @@ from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.sheets import PanelSheet
 from tests.cli.conftest import Run
 from tests.reference_shapes import Lip, kernel_lip, strip, write_products
+from tests.thorough import thorough
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
@@ -217,6 +218,7 @@ def test_overwrite_replaces_a_delivery(run: Run, lip_step: Path, delivery: Path)
     assert (delivery / "panels.step").is_file()
 
 
+@thorough
 def test_what_goes_to_a_file_is_plain_text(lip_step: Path, tmp_path: Path) -> None:
     answer = subprocess.run(
         [*PROGRAM, "fit", str(lip_step), "--out", str(tmp_path / "out"), "--outputs", "step"],

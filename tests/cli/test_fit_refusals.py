@@ -19,6 +19,7 @@ from OCP.TopoDS import TopoDS_Shape
 from cadpanel.arrays import Array
 from tests.cli.conftest import Run
 from tests.reference_shapes import Lip, kernel_face, kernel_lip, write_products
+from tests.thorough import thorough
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 
@@ -152,6 +153,7 @@ def test_a_reference_that_is_none_is_refused_in_one_sentence_and_leaves_nothing(
     assert [path.name for path in tmp_path.iterdir()] == ["in"]
 
 
+@thorough
 def test_a_full_disk_is_one_sentence_and_leaves_nothing(lip_step: Path, tmp_path: Path) -> None:
     """A limit on the size of a file stands for the full disk: the operating system refuses the write alike."""
     answer = subprocess.run(

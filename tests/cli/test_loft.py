@@ -16,6 +16,7 @@ from cadpanel.delivery.pictures.loft import draw_loft
 from cadpanel.delivery.records.loft import read_loft
 from cadpanel.errors import LoftError, ProofError
 from tests.known_rails import CONE, CYLINDER, TWISTED, curve, rails
+from tests.thorough import thorough
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +54,7 @@ def test_a_loft_is_written_and_read_back(run, file, tmp_path):
     assert read_loft(tmp_path / "loft" / "loft.json") == record
 
 
+@thorough
 def test_a_cone_and_a_cylinder_are_delivered_as_such(tmp_path):
     level = [curve(CONE[0], 0.0, 1.5), curve(CONE[1], 0.0, 1.5)]
     assert cp.deliver_loft(cp.loft(*level), tmp_path / "cone").proof.faces == ("cone",)
@@ -84,6 +86,7 @@ def test_the_program_s_rails_are_those_of_the_file(file):
     assert one.length > other.length > 500.0
 
 
+@thorough
 def test_rails_that_no_surface_fits_are_delivered_all_the_same_with_their_warp(tmp_path, monkeypatch):
     random = np.random.default_rng(8)
     along = np.linspace(0.0, 1000.0, 6)[:, None]

@@ -130,6 +130,7 @@ def test_between_cones_a_joint_is_as_wide_as_asked_along_the_whole_seam(
         assert seam.clear.largest <= 10.0 + (wider if seam.edges[0].startswith("side") else 2.0 * wider) + 1e-6
 
 
+@thorough
 def test_the_skins_are_cut_back_as_the_solids_are_and_gaps_stay_those_of_the_fit(tmp_path: Path) -> None:
     plain = deliver(fitted("lip"), tmp_path / "plain")
     wide = deliver(fitted("lip"), tmp_path / "wide", SheetSettings(joint=20.0))
@@ -162,6 +163,7 @@ def tampered(folder: Path, report: ReportModel) -> tuple[str, ...]:
     return verify(folder).failures
 
 
+@thorough
 def test_a_joint_in_the_report_that_is_not_the_files_is_named(tmp_path: Path) -> None:
     out = tmp_path / "out"
     report = deliver(fitted("lip"), out, SheetSettings(joint=10.0))

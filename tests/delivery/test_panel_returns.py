@@ -31,7 +31,7 @@ from tests.fitted_grids import gable
 from tests.flat_parts import records_of, strip_records
 from tests.instances import random_polygon
 from tests.shapes import random_panel
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 SHOP = ShopSettings(returns=(30.0, 2.5), k_factor=0.4, fixings=(6.0, 400.0, 12.0))
 
@@ -47,7 +47,7 @@ def earlier_places(folder: Path) -> Array:
 @pytest.mark.parametrize(("ends", "side"), cases([("square", "outer")], [("bevel", "inner"), ("square", "outer")]))
 def test_returns_are_part_of_everything_and_proved(tmp_path: Path, ends: str, side: SkinSide) -> None:
     sheet = SheetSettings(ends=ends, skin_side=side, joint=8.0)  # type: ignore[arg-type]
-    plain = deliver(fitted(), tmp_path / "plain", sheet, replace(SHOP, returns=None))
+    plain = deliver(fitted(), tmp_path / "plain", sheet, replace(SHOP, returns=None, outputs="step,flats"))
     report = deliver(fitted(), tmp_path / "out", sheet, SHOP)
     assert verify(tmp_path / "out").holds
     # Gaps are those of the fit, returns or none.
@@ -100,6 +100,7 @@ def fitted_quadrilaterals() -> FitResult:
     return found
 
 
+@thorough
 @pytest.mark.parametrize(
     ("of", "ends", "side"),
     cases(

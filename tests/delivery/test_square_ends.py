@@ -25,7 +25,7 @@ CASES: list[tuple[float, float, SkinSide]] = [(10.0, 3.0, "outer"), (0.0, 20.0, 
 
 
 @pytest.mark.parametrize("name", cases(["lip"], [*FITS]))
-@pytest.mark.parametrize(("joint", "thickness", "skin_side"), CASES)
+@pytest.mark.parametrize(("joint", "thickness", "skin_side"), cases(CASES[:1], CASES))
 def test_square_sheets_keep_the_joint_free_and_are_proved_so(
     tmp_path: Path, name: str, joint: float, thickness: float, skin_side: SkinSide
 ) -> None:

@@ -20,6 +20,7 @@ from fixtures.arrays import reference
 from fixtures.lips import Lip
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone
+from tests.thorough import thorough
 
 # Panels that are exactly what their feature is; each is cheapest for itself.
 KINDS = [
@@ -111,6 +112,7 @@ def strip(name):
     return read_reference(Path(__file__).parents[2] / "fixtures" / f"{name}.step")
 
 
+@thorough
 def test_panels_that_closing_takes_too_far_get_a_closer_feature_and_no_others():
     result = fit(strip("kai_tak_se_east"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=40.0))
     assert result.tolerance_met

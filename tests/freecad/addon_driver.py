@@ -104,19 +104,20 @@ def refit(folder: str) -> "dict[str, Any]":
         "out": dialog.out.text(),
     }
     out = dialog.out.text()
-    steps: list[str] = []
+    messages: list[str] = []
     dialog.start()
     wait(lambda: bool(dialog.run.step))
     dialog.cancel()
     found["cancelled"] = [dialog.message.text(), Path(out).exists()]
     dialog.start()
+    run = dialog.run
 
     def ended() -> bool:
-        steps.append(dialog.message.text())
+        messages.append(dialog.message.text())
         return dialog.ended is not None
 
     wait(ended)
-    found |= {"steps": list(dict.fromkeys(steps)), "code": dialog.ended, "message": dialog.message.text()}
+    found |= {"steps": run.steps, "messages": messages, "code": dialog.ended, "message": dialog.message.text()}
     opened = FreeCAD.ActiveDocument
     found["opened"] = [opened.FileName, [panel.PanelName for panel in documents.panels_of(opened)]]
     found["features"] = [panel.Feature for panel in documents.panels_of(opened)]

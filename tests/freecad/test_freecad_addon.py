@@ -89,8 +89,9 @@ def test_a_fit_tells_its_steps_is_cancelled_without_a_trace_and_opens_what_it_wr
     assert run["reference"] == str(folder.parent / "lip.step")
     assert run["cancelled"] == ["Cancelled; nothing was written.", False]
     assert run["code"] in (0, 1)  # one panel has a stiffer feature than the others now, and may miss a limit
-    assert any(step.startswith("Fit all at once step ") for step in run["steps"])
-    assert "Read back and verify" in run["steps"]
+    # The dialog looks four times a second, and a step that took less may not be seen: one of them is, all are known.
+    assert run["steps"].index("Fit all at once") < run["steps"].index("Read back and verify")
+    assert any(message.startswith(tuple(run["steps"])) for message in run["messages"])
     assert run["opened"] == [str(folder.parent / "delivery-2" / DOCUMENT), NAMES]
     assert run["refused"][0] == 2
     assert "exists already" in run["refused"][1]

@@ -145,6 +145,7 @@ def test_the_window_shows_panels_coloured_by_deviation_and_red_seams(
     assert red > 20
 
 
+@thorough
 def test_the_window_shows_panels_by_the_triangles_that_come_with_them_and_makes_none_of_what_is_hidden(
     answers: dict[str, dict[str, Any]], folder: Path, tmp_path: Path
 ) -> None:

@@ -58,24 +58,30 @@ def mutants_of(path: str, text: str) -> list[Mutant]:
     """All changes of a file, in the order of their places."""
     tree = ast.parse(text)
     spans = [_span(node) for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    statements = [_span(one) for one in tree.body]
     lines = text.splitlines()
     found = set()
     for line, column, old, new in _changes(tree, text):
         column = len(lines[line - 1].encode()[:column].decode())  # the parser counts bytes
         function = min((span for span in spans if span[0] <= line <= span[1]), default=(0, 0))
         mutant = Mutant(path=path, line=line, column=column, old=old, new=new, function=function)
-        if _compiles(mutant.applied(text)):
+        if _compiles(mutant, text, statements):
             found.add(mutant)
     return sorted(found)
 
 
-def _span(function: ast.FunctionDef) -> tuple[int, int]:
-    return min([function.lineno, *(one.lineno for one in function.decorator_list)]), function.end_lineno or 0
+def _span(node: ast.stmt) -> tuple[int, int]:
+    """First and last line of a statement with its decorators."""
+    decorators: list[ast.expr] = getattr(node, "decorator_list", [])
+    return min([node.lineno, *(one.lineno for one in decorators)]), node.end_lineno or 0
 
 
-def _compiles(text: str) -> bool:
+def _compiles(mutant: Mutant, text: str, statements: Sequence[tuple[int, int]]) -> bool:
+    """Whether the statement at the file's top level in which a change is made is still one."""
+    first, last = next(span for span in statements if span[0] <= mutant.line <= span[1])
+    lines = mutant.applied(text).splitlines(keepends=True)
     try:
-        ast.parse(text)
+        ast.parse("".join(lines[first - 1 : last]))
     except SyntaxError:
         return False
     return True

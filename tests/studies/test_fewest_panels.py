@@ -16,6 +16,7 @@ from cadpanel.studies.fewest_panels import MOST_FITS, TOO_LARGE, fewest_panels
 from fixtures.arrays import reference as sampled_lip
 from fixtures.lips import Lip
 from tests.delivered import fitted
+from tests.thorough import thorough
 
 ALLOWED = 10.0
 ASKED = FitSettings(gap_tolerance=1.0, max_deviation=ALLOWED)
@@ -174,6 +175,7 @@ def cut(count, length=6000.0):
     return sampled_lip(lip)
 
 
+@thorough
 def test_of_a_real_strip_the_number_found_holds_and_one_fewer_does_not():
     asked = FitSettings(gap_tolerance=2.0, max_deviation=8.0)
     found = fewest_panels(cut, asked)

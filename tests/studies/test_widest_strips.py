@@ -16,6 +16,7 @@ from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import FaceSamples, RawPanel, Reference
 from cadpanel.studies import widest_strips as module
 from cadpanel.studies.widest_strips import Cuts, Widest, _off, widest_strips
+from tests.thorough import thorough
 
 # Of the barrels, mm: along the strip, and across.
 LENGTH, WIDTH = 9000.0, 1500.0
@@ -114,6 +115,7 @@ def test_without_a_deviation_or_with_two_strips_there_is_nothing_to_look_for() -
         widest_strips(lambda _: both, FLAT)
 
 
+@thorough
 def test_a_bound_much_tighter_than_it_need_be_is_widened_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fewer than seven panels miss, and by so much that the next bound leaps far below the one that would hold."""
 
@@ -130,6 +132,7 @@ def test_a_bound_much_tighter_than_it_need_be_is_widened_again(monkeypatch: pyte
     assert 7 <= len(strips.widths) <= 9
 
 
+@thorough
 def test_panels_too_wide_to_be_fitted_together_are_made_narrower_or_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     fewest = 4
 

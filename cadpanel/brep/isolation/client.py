@@ -62,6 +62,7 @@ class Interpreter:
                 stderr=self._said,
                 bufsize=0,
             )
+            self._heed_kill()
             # A thread waits for what comes: a pipe that is read with a time limit is a thing of POSIX.
             self._frames = queue.SimpleQueue()
             self._listener = threading.Thread(target=_listen, args=(self._process.stdout, self._frames), daemon=True)
@@ -132,8 +133,12 @@ class Interpreter:
     def kill(self) -> None:
         """End the interpreter for good, at once, whoever waits for its answer; that one is told that it has died."""
         self._killed = True
+        self._heed_kill()
+
+    def _heed_kill(self) -> None:
+        """End it if it was killed: it may have been while it was being started."""
         process = self._process
-        if process is not None:
+        if self._killed and process is not None:
             process.kill()
 
     def interrupt(self) -> None:

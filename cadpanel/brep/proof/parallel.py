@@ -12,12 +12,12 @@ import queue
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from pathlib import Path
 from typing import cast
 
-from cadpanel.brep.isolation.client import READER, Interpreter
+from cadpanel.brep.isolation.client import LOOK_UP, READER, Interpreter
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
 from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.kept_facts import KeptFacts
@@ -151,8 +151,10 @@ class Helper:
 
     def end(self) -> None:
         """End it at once, and what the other one reads for nobody any more."""
-        if self._opened is not None and not self._opened[1].done():
-            READER.interrupt()
+        if self._opened is not None:
+            while not self._opened[1].done():  # it may be about to ask, and would start the reader again
+                READER.interrupt()
+                wait([self._opened[1]], timeout=LOOK_UP)
         self._interpreter.kill()
         self._reader.shutdown(cancel_futures=True)
         self._clerk.shutdown(cancel_futures=True)

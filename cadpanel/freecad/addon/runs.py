@@ -50,6 +50,8 @@ class Run:
         self._rest = b""
         self._sentences: list[str] = []
         self.step: dict[str, Any] = {}
+        self.steps: list[str] = []
+        """Names of the steps so far, each once, in their order: whoever looks rarely does not see every `step`."""
         # A console of its own would flash up on Windows.
         flags = getattr(subprocess, "CREATE_NO_WINDOW", 0) if sys.platform == "win32" else 0
         self._process = subprocess.Popen(
@@ -93,5 +95,7 @@ class Run:
     def _hear(self, line: str) -> None:
         if line.startswith('{"step"'):
             self.step = json.loads(line)
+            if self.step["step"] not in self.steps:
+                self.steps.append(self.step["step"])
         elif line:
             self._sentences.append(line)

@@ -33,7 +33,7 @@ def test_ring_of_flange_bend_and_fascia_is_divided_round(tmp_path, turns, count)
     assert_round(cut(tmp_path, RINGS[turns], divide=count), count, WHOLE, 2e-3)
 
 
-@pytest.mark.parametrize("turns", ["whole turns", "halves"])
+@pytest.mark.parametrize("turns", cases(["halves"], ["whole turns", "halves"]))
 @pytest.mark.parametrize("width", cases([300.0], [300.0, 900.0]))
 def test_band_about_the_bend_of_a_ring_is_divided_round(tmp_path, turns, width):
     assert_round(cut(tmp_path, RINGS[turns], divide=12, lip=width), 12, band_area(width), 1e-2)

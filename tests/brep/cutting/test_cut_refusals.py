@@ -60,7 +60,7 @@ GRIDS = [
 ]
 
 
-@pytest.mark.parametrize(("face", "grid", "sentence", "remedy"), GRIDS)
+@pytest.mark.parametrize(("face", "grid", "sentence", "remedy"), cases(GRIDS[::2], GRIDS))
 def test_grids_that_leave_no_panels_are_refused_with_a_remedy_that_works(tmp_path, face, grid, sentence, remedy):
     with pytest.raises(CadpanelError, match=sentence):
         reference_of(tmp_path, face, grid=grid)
@@ -120,7 +120,7 @@ def test_what_is_no_strip_is_pointed_to_other_ways_to_cut(tmp_path, face, fault)
         reference_of(tmp_path, face, stations=(500.0,))
 
 
-@pytest.mark.parametrize("station", [1e-3, 0.5, 2.4, 8998.0, 8999.9999, 9000.0, 9500.0])
+@pytest.mark.parametrize("station", cases([2.4, 9000.0], [1e-3, 0.5, 2.4, 8998.0, 8999.9999, 9000.0, 9500.0]))
 def test_stations_at_or_beyond_the_ends_are_refused_with_the_stretch_that_has_room(tmp_path, station):
     where = "too close to" if station < 9000.0 else "beyond"
     sentence = (

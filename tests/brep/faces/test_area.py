@@ -14,6 +14,7 @@ from cadpanel.brep.splitting.splitter import area_of
 from tests.drawn import LENGTH, WAVE, WIDTH, curve, cut_points, plate, raw, wave
 from tests.model_files import STRIP, strip_faces
 from tests.reference_shapes import kernel_face
+from tests.thorough import cases
 
 # Parts of the area.
 PLANE_ERROR = 1e-7
@@ -25,7 +26,7 @@ def weight(panel):
 
 
 # Four, eight, 16 and 32 periods put every one of 33 even points where the wave crosses its own middle.
-@pytest.mark.parametrize("periods", [1, 4, 8, 10, 16, 32, 40])
+@pytest.mark.parametrize("periods", cases([4, 10, 32], [1, 4, 8, 10, 16, 32, 40]))
 def test_halves_of_a_plate_beside_a_wave_weigh_half_and_show_its_crests(tmp_path, periods):
     panels = raw(tmp_path, plate(), [wave(periods)]).panels
     assert [weight(panel) for panel in panels] == pytest.approx(2 * [0.5 * LENGTH * WIDTH], rel=PLANE_ERROR)

@@ -5,7 +5,7 @@ import pytest
 from tests.brep.files.mutants import MUTANTS, ending, originals, read
 from tests.thorough import cases
 
-SEEDS = {"strip.step": range(cases(6, 20)), "tube.3dm": range(cases(4, 10))}
+SEEDS = {"strip.step": range(cases(4, 20)), "tube.3dm": range(cases(3, 10))}
 
 
 @pytest.mark.parametrize("name", MUTANTS)

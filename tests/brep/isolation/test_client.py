@@ -110,6 +110,20 @@ def test_each_file_and_the_work_have_a_time_of_their_own(model, lines, other_ser
         read_raw_panels(model, ReferenceSettings(unit="mm", network=lines))
 
 
+def test_one_that_is_killed_while_it_is_being_started_ends_at_once(monkeypatch):
+    started, one = subprocess.Popen, client.Interpreter()
+
+    def killed(words, **how):
+        one.kill()
+        return started(words, **how)
+
+    monkeypatch.setattr(client.subprocess, "Popen", killed)
+    assert one.start().wait(timeout=10.0) != 0
+    one.stop()
+    with pytest.raises(RuntimeError):
+        one.start()
+
+
 def test_a_file_beside_the_reference_is_a_stage_of_its_own_unless_it_is_the_reference(model, lines):
     def files(work, **how):
         return [stage.file for stage in requests.work_request(work, model, ReferenceSettings(**how)).stages]

@@ -1,6 +1,7 @@
 """The certificate holds for what was delivered and fails for anything that was changed afterwards."""
 
 import threading
+import time
 from dataclasses import replace
 from typing import Any
 
@@ -307,8 +308,16 @@ def test_files_that_are_read_ahead_give_the_same_and_are_read_again_for_who_asks
         assert not delivery.certify(helper=helper).holds
 
 
-def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monkeypatch):
+@pytest.mark.parametrize("late", [0.0, 0.3])
+def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monkeypatch, late):
     client.stop_reader()
+    ask = client.Interpreter.ask
+
+    def ask_late(interpreter, request):
+        time.sleep(late)  # s: it is given up before it was asked for
+        return ask(interpreter, request)
+
+    monkeypatch.setattr(client.Interpreter, "ask", ask_late)
     monkeypatch.setattr(client, "interpreter", lambda _: forks(SLOW))
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:

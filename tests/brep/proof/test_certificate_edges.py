@@ -14,6 +14,7 @@ from cadpanel.geometry.shape import PanelShape, PolygonShape
 from cadpanel.geometry.volume import sheet_volume
 from tests.instances import random_polygon
 from tests.shapes import folded_panel, moved
+from tests.thorough import thorough
 
 THICKNESS = 3.0
 GAP = 0.25
@@ -81,6 +82,7 @@ every_neighbourhood = pytest.mark.parametrize(
 )
 
 
+@thorough
 @every_neighbourhood
 def test_a_seam_along_sides_or_polygon_edges_is_measured(tmp_path, shapes, seam):
     found = certified(tmp_path, shapes, [seam])

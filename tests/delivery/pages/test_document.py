@@ -51,6 +51,7 @@ def test_every_panel_has_a_page_with_its_numbers(delivery: tuple[Path, ReportMod
         assert len(re.findall(rb"(?<=\d) c\b", contents.get_data())) == 4 * len(panel.fixings) > 0
 
 
+@thorough
 def test_the_same_delivery_gives_the_same_bytes_at_the_same_date(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

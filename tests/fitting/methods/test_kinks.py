@@ -18,6 +18,7 @@ from cadpanel.solver.interior_point import interior_point
 from cadpanel.solver.stop import Stop
 from fixtures.arrays import reference
 from tests.benchmarks.holding import random_lip
+from tests.thorough import thorough
 
 
 def largest(problem, unknowns, settings):
@@ -44,6 +45,7 @@ def test_what_comes_nearer_to_what_is_asked_for_is_kept_and_what_must_hold_holds
     assert np.array_equal(again.unknowns, found.unknowns)
 
 
+@thorough
 def test_a_kink_that_can_be_held_is_held_along_the_arcs_as_well_as_at_corners():
     measures = cp.fit(reference(random_lip(5, 3)), max_kink=2.0).measures
     assert np.degrees(measures.kink.max()) <= 2.0

@@ -19,7 +19,7 @@ from cadpanel.terms.limits.catalogue import LIMITS
 from fixtures.arrays import reference
 from tests.benchmarks.holding import random_lip
 from tests.columns import column
-from tests.thorough import THOROUGH, cases
+from tests.thorough import THOROUGH, cases, thorough
 
 # A fit ends where less than a thousandth of the cost is left to gain; millimetres or degrees count by the same share.
 NO_WORSE = 1.01
@@ -59,6 +59,7 @@ def test_every_limit_that_can_be_asked_for_has_a_ladder():
         assert all(list(ladder) == sorted(ladder, reverse=at_least) for ladder in ladders)
 
 
+@thorough
 @pytest.mark.parametrize("limit", LADDERS)
 @pytest.mark.parametrize("of", LIPS)
 def test_a_looser_limit_breaks_nothing_that_held_and_costs_no_deviation(of, limit):

@@ -38,6 +38,7 @@ def test_every_panel_keeps_every_limit_wherever_it_was(case):
     assert steps > 0
 
 
+@thorough
 def test_panels_that_are_not_named_stay_where_the_first_start_has_them(case):
     problem, local, starts = case
     found, _ = restored(problem, FIRM, np.array([1]), [local, *starts])

@@ -117,7 +117,7 @@ def test_one_that_is_killed_while_it_is_being_started_ends_at_once(monkeypatch):
         one.kill()
         return started(words, **how)
 
-    monkeypatch.setattr(client.subprocess, "Popen", killed)
+    monkeypatch.setattr(subprocess, "Popen", killed)
     assert one.start().wait(timeout=10.0) != 0
     one.stop()
     with pytest.raises(RuntimeError):

@@ -14,6 +14,7 @@ from cadpanel.features.numbers import LARGEST, Number
 from cadpanel.features.patches import Cone, Cylinder, Plane
 from cadpanel.features.polygon import MOST_CORNERS, Polygon
 from tests.chains import CHAINS, COMPOSED, FEATURES
+from tests.thorough import cases
 
 every_feature = pytest.mark.parametrize("name", sorted(FEATURES))
 
@@ -66,7 +67,7 @@ def test_fixed_tilt_changes_nothing_where_cuts_are_not_mitred():
         assert (named(name, tilt="fixed") == named(name)) == (entry.cuts != "mitre")
 
 
-@pytest.mark.parametrize("cones", [1, 4, MOST_PATCHES])
+@pytest.mark.parametrize("cones", cases([1, 4], [1, 4, MOST_PATCHES]))
 def test_a_cone_spline_has_three_numbers_a_cone(cones):
     assert len(named(f"cone-spline-{cones}").free) == 5 + 3 * cones + 6
 

@@ -20,7 +20,7 @@ from fixtures.arrays import reference
 from fixtures.lips import Lip
 from tests.instances import random_polygon, random_shapes
 from tests.known_panels import alone
-from tests.thorough import thorough
+from tests.thorough import cases, thorough
 
 # Panels that are exactly what their feature is; each is cheapest for itself.
 KINDS = [
@@ -123,6 +123,7 @@ def test_panels_that_closing_takes_too_far_get_a_closer_feature_and_no_others():
     assert {shape.feature for shape in wide.shapes} == {"plane-cylinder-plane"}
 
 
+@thorough
 def test_where_no_feature_follows_closely_enough_everything_else_holds():
     result = fit(strip("kai_tak_nw"), replace(LIKE_THE_PAPER, feature="auto", max_deviation=10.0))
     assert not result.tolerance_met
@@ -142,7 +143,10 @@ def test_what_is_chosen_is_worth_no_less_than_the_common_feature_and_holds_seams
     assert all(np.all(result.measures.gaps[what] <= most) for what, most in result.settings.gaps.items())
 
 
-@pytest.mark.parametrize("name", ["plane-cone-cone-plane", "plane-cone-plane-cone-plane", "tri-cone", "cone-spline-5"])
+CHAINS = ["plane-cone-cone-plane", "plane-cone-plane-cone-plane", "tri-cone", "cone-spline-5"]
+
+
+@pytest.mark.parametrize("name", cases(CHAINS[::2], CHAINS))
 def test_chains_of_several_curved_patches_hold_a_strip_that_one_would_do_for(name):
     result = fit(strip("kai_tak_nw"), FitSettings(feature=name))
     assert result.tolerance_met

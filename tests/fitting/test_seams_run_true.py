@@ -63,6 +63,7 @@ def test_without_limits_on_seams_they_turn_left_and_right() -> None:
     assert np.degrees(free.turn.max()) > 6.0
 
 
+@thorough
 def test_more_panels_mean_a_closer_skin() -> None:
     """With joints of 20 +- 5 mm and steps of 5 mm."""
     rms = [

@@ -57,10 +57,10 @@ def beside(references: tuple[cp.Reference, ...]) -> cp.Reference:
     ("lips", "how", "held"),
     [
         ((GENTLE, TWISTED), {}, (True, True)),
-        ((GENTLE, SMALL, ALONE), {}, (True, True, True)),
+        pytest.param((GENTLE, SMALL, ALONE), {}, (True, True, True), marks=thorough),
         ((GENTLE, SMALL, ALONE), MILLIMETRE, (True, True, True)),
         pytest.param((TWISTED, GENTLE, ALONE), {"tilt": "fixed", **MILLIMETRE}, (True, False, True), marks=thorough),
-        ((GENTLE, SMALL), {"method": "two_stage", **MILLIMETRE}, (False, False)),
+        pytest.param((GENTLE, SMALL), {"method": "two_stage", **MILLIMETRE}, (False, False), marks=thorough),
     ],
 )
 def test_what_stands_beside_a_strip_changes_nothing_of_it_however_hopeless_it_is(lips, how, held):

@@ -9,6 +9,7 @@ from cadpanel.geometry.conic_chains import ConicChains, conic_chains
 from cadpanel.geometry.end_curves import as_chains
 from cadpanel.geometry.widest_place import INTERVALS, widest
 from tests.seams import KINDS, backwards
+from tests.thorough import cases
 
 SEAMS = 40
 # Of what is found, of the gap for its parts, and mm or radians.
@@ -53,7 +54,7 @@ def assert_same(found, wanted, parts=PARTS):
     assert (np.abs(np.subtract(found, wanted)) <= allowed + ROUNDING).all()
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", cases([*KINDS][::3], [*KINDS]))
 def test_the_widest_place_is_the_same_however_curves_are_cut_into_pieces(kind):
     first, second = pair(kind)
     wanted = np.array(widest(cut(first, 3), cut(second, 3)))

@@ -57,6 +57,7 @@ def test_a_small_panel_keeps_its_narrow_faces_whatever_the_tolerance(tolerance):
         find_outline(apart(0.7, lip), "roof.step", tolerance)
 
 
+@pytest.mark.each_value_once
 @pytest.mark.parametrize("gap", [-3.0, -1.5, 1.5, 3.0])
 @pytest.mark.parametrize(
     ("how", "count"), [({"divide": 5}, 5), ({"stations": (2000.0,)}, 2), ({"grid": (1, 4)}, 12), ({}, 3)]

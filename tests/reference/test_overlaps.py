@@ -59,6 +59,7 @@ def test_panels_that_only_meet_cover_nothing(panels):
     check(*panels)
 
 
+@thorough
 @given(
     place=st.tuples(st.floats(0.05, 0.7), st.floats(0.05, 0.7)),
     size=st.tuples(st.floats(0.004, 0.25), st.floats(0.004, 0.25)),

@@ -17,6 +17,7 @@ from cadpanel.geometry.polyline import arc_length
 from tests.instances import random_polygon
 from tests.known_panels import alone, sampled
 from tests.shapes import folded_panel, random_panel
+from tests.thorough import thorough
 
 # Millimetres.
 RECOVERED = 1e-6
@@ -123,6 +124,7 @@ def test_a_bend_that_is_not_where_it_was_told_to_be_is_told(shape, grown, aside)
     assert missed[1] == pytest.approx(np.array([[own.first, own.last]] * 2), abs=2.0 * RECOVERED)
 
 
+@thorough
 def test_a_delivery_says_which_panels_bend_elsewhere_than_they_were_told_to(tmp_path):
     shape = folded_panel(radius=300.0, sweep=1.5, widths=(400.0, 400.0))
     for first, last, said in ((400.0, 850.0, 0), (700.0, 1000.0, 1)):

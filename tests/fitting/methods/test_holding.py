@@ -9,7 +9,7 @@ import cadpanel as cp
 from cadpanel.fitting.measures.verdict import limits_of
 from fixtures.arrays import reference
 from fixtures.lips import Lip
-from tests.thorough import cases
+from tests.thorough import cases, thorough
 
 
 def lip(twist: float = 3.0) -> cp.Reference:
@@ -59,6 +59,7 @@ def test_what_holds_a_narrow_gap_holds_a_wide_one_also_where_gaps_give_way(seed)
         assert found.tolerance_met or share < 1.0
 
 
+@thorough
 @pytest.mark.parametrize("twist", [(7.0, -9.0)])
 def test_limits_hold_however_far_gaps_must_open_for_them(twist):
     """Upright ends, a roof edge that may hardly move, and wide bends: less would be left of the limits than of gaps."""

@@ -23,9 +23,9 @@ from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.delivery.verify import contents_of, verify
 from cadpanel.geometry.drilled_mesh import hole_count
 from tests.delivered import fitted
-from tests.thorough import thorough
+from tests.thorough import cases, thorough
 
-ASKED = ShopSettings(fixings=(9.0, 300.0, 20.0), k_factor=0.42)
+ASKED = ShopSettings(fixings=(9.0, cases(600.0, 300.0), 20.0), k_factor=0.42)
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def rows(path: Path) -> list[list[str]]:
 
 def test_the_holes_of_solids_drawings_and_tables_are_those_of_the_report(folder: Path, report: ReportModel) -> None:
     certificate, total = report.certificate, sum(len(panel.fixings) for panel in report.panels)
-    assert certificate.holes == total > 60
+    assert certificate.holes == total > 30
     assert certificate.hole_error < 1e-9
     assert certificate.volume_error < 1e-9
     assert certificate.overlap == 0.0

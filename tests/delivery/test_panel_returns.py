@@ -33,7 +33,7 @@ from tests.instances import random_polygon
 from tests.shapes import random_panel
 from tests.thorough import cases, thorough
 
-SHOP = ShopSettings(returns=(30.0, 2.5), k_factor=0.4, fixings=(6.0, 400.0, 12.0))
+SHOP = ShopSettings(returns=(30.0, 2.5), k_factor=0.4, fixings=(6.0, cases(1200.0, 400.0), 12.0))
 
 
 def earlier_places(folder: Path) -> Array:

@@ -15,10 +15,11 @@ from cadpanel.geometry.volume import sheet_volume
 from tests.built import area_of, exactly_valid
 from tests.drilled import fixed
 from tests.flat_panels import panels
+from tests.thorough import cases
 
 pytestmark = pytest.mark.each_value_once
 
-NAMES = ("plane-cone-plane", "cylinder", "plane-cylinder-plane-cone-plane", "tri-cone", "polygon of 5")
+NAMES = ("plane-cone-plane", "cylinder", *cases((), ("plane-cylinder-plane-cone-plane", "tri-cone")), "polygon of 5")
 BOTH: list[tuple[float, SkinSide]] = [(3.0, "outer"), (12.0, "inner")]
 
 

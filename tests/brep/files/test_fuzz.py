@@ -26,7 +26,7 @@ from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
 from tests.thorough import cases
 
-VARIANTS = cases(12, 110)  # of each of six files, so 660 in all in a thorough run
+VARIANTS = cases(8, 110)  # of each of six files, so 660 in all in a thorough run
 SECONDS = 3.0  # after which a reader counts as hanging
 LONGEST_SENTENCE = 1000
 pytestmark = pytest.mark.usefixtures("forked_readers")  # or the kernel would be loaded for every crash

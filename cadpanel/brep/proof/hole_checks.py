@@ -75,7 +75,8 @@ def check_holes(name: str, expected: ExpectedHoles | None, solid: ShapeFacts, fa
     if not error <= HOLE_LIMIT:
         failures.append(f"Panel '{name}': a hole in its solid lies {error:.3g} mm off where the flat pattern has it.")
         return error
-    room = float(clearance(expected.pattern, flats.reshape(-1, 2)).min()) + 0.5 * expected.diameter
+    # Rims are circles about these middles now, so that what holds of the middles holds of them.
+    room = float(clearance(expected.pattern, expected.middles).min())
     if not room >= expected.distance - 2.0 * TOO_NEAR:
         failures.append(
             f"Panel '{name}': a hole's middle is {room:.3g} mm from an edge or a bend, {expected.distance:g} mm were "

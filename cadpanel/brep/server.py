@@ -12,7 +12,8 @@ from typing import BinaryIO, cast
 
 from OCP.Standard import Standard_Failure
 
-from cadpanel.brep.building.many import ToBuild, measure_sheets
+from cadpanel.brep.building.many import measure_sheets
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.curves.rails import FileCurves, load_curves
 from cadpanel.brep.cutting.products_by_two import products_by_two
 from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
@@ -24,7 +25,6 @@ from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage,
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
 from cadpanel.brep.kernel.said import said_by
 from cadpanel.brep.proof.archive import kept_facts
-from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.finding_back import find_back
 from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
@@ -90,7 +90,7 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "inspect": lambda request, _: inspect_packed(cast(Packed, request.argument)),
     "common": lambda request, _: INSPECTOR.common(request.path, cast(Sequence[tuple[int, int]], request.argument)),
     "kept": lambda request, _: kept_facts(request.path),
-    "measure": lambda request, _: measure_sheets(cast(Sequence[ToBuild], request.argument)),
+    "measure": lambda request, _: measure_sheets(cast(Sequence[Sheet], request.argument)),
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
     "back": lambda request, go_on: find_back(request.path, cast(Path, request.argument), go_on),
     "close": lambda _request, _: INSPECTOR.close(),

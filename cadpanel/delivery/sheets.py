@@ -8,7 +8,8 @@ from itertools import count
 from typing import NamedTuple
 
 from cadpanel.arrays import Array
-from cadpanel.brep.building.many import MadeSheet, ToBuild, make_sheets
+from cadpanel.brep.building.many import MadeSheet, make_sheets
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.kernel.types import Shell, Solid
 from cadpanel.brep.step.properties import Validation
 from cadpanel.delivery.panel_fixings import PanelFixings, panel_fixings
@@ -159,7 +160,7 @@ class _Plan(NamedTuple):
     straight: Straightened[Panel]
     cut: Returned
     fixings: PanelFixings | None
-    wanted: ToBuild
+    wanted: Sheet
 
 
 def _plan(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, shop: ShopSettings) -> _Plan:
@@ -167,11 +168,14 @@ def _plan(straight: Straightened[Panel], cut: Returned, sheet: SheetSettings, sh
     shape = cut.shape.squared(depth) if sheet.ends == "square" else cut.shape
     fixings = panel_fixings(shape, sheet, shop)
     holes = () if fixings is None else fixings.holes
-    return _Plan(straight, cut, fixings, ToBuild(shape, sheet.thickness, sheet.skin_side, holes))
+    return _Plan(
+        straight, cut, fixings, Sheet(shape=shape, thickness=sheet.thickness, skin_side=sheet.skin_side, holes=holes)
+    )
 
 
 def _panel_sheet(plan: _Plan, made: MadeSheet) -> PanelSheet:
-    straight, cut, fixings, (shape, thickness, skin_side, _) = plan
+    straight, cut, fixings, wanted = plan
+    shape, thickness, skin_side = wanted.shape, wanted.thickness, wanted.skin_side
     found = made.measured
     volume = found.volume - (fixings.volume if fixings is not None else 0.0)
     notes = tuple(

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.proof.certificate import Certificate, certify
 from cadpanel.brep.proof.clearances import Clear
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted, Sheet
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, Fitted
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.proof.parallel import Helper, Told, unheard

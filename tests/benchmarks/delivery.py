@@ -22,10 +22,11 @@ from pathlib import Path
 from shutil import rmtree
 from typing import NamedTuple, TypeVar
 
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.isolation.client import start_reader, stop_reader
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.brep.proof.certificate import Certificate, certify
-from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind, Sheet
+from cadpanel.brep.proof.expected import ExpectedPanel, ExpectedSeam, PatchKind
 from cadpanel.brep.proof.parallel import Helper, second_interpreter
 from cadpanel.brep.read import read_reference
 from cadpanel.delivery.built_already import built_already

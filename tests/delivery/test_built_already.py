@@ -1,6 +1,6 @@
 """What was built from the numbers of a record is known by its boundary; what was not, is built anew."""
 
-from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.proof.rebuilding import rebuild
 from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.proof.same_boundaries import same_boundaries

@@ -14,20 +14,18 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import cast
 
 from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
 from cadpanel.arrays import Array
 from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and_centroid
 from cadpanel.brep.building.sheet import build_checked, build_panel
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.isolation.beside import processors
 from cadpanel.brep.isolation.client import READER
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage
 from cadpanel.errors import CadpanelError, PanelError
-from cadpanel.geometry.fixings import Hole
-from cadpanel.geometry.panel import Panel
-from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.volume import sheet_volume
 
 WORTHWHILE_PANELS = 400
@@ -37,15 +35,6 @@ CHUNK = 16
 WITHIN = Path(__file__).parent
 """A folder that is there: nothing is looked for in it."""
 Told = Callable[[int], None]
-
-
-class ToBuild(NamedTuple):
-    """A sheet that is asked for: see `build_panel`."""
-
-    shape: Panel
-    thickness: float
-    skin_side: SkinSide
-    holes: tuple[Hole, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,13 +63,13 @@ class MadeSheet:
     measured: Measured
 
 
-def make_sheet(wanted: ToBuild) -> MadeSheet:
+def make_sheet(wanted: Sheet) -> MadeSheet:
     """Build one.
 
     Raises:
         PanelError: it cannot be built (see `check_buildable`).
     """
-    built = build_panel(*wanted)
+    built = build_panel(wanted.shape, wanted.thickness, wanted.skin_side, wanted.holes)
     area, _ = area_and_centroid(built.solid)
     _, centroid = volume_and_centroid(built.solid)
     skin_area, skin_centroid = area_and_centroid(built.skin)
@@ -94,7 +83,7 @@ def make_sheet(wanted: ToBuild) -> MadeSheet:
     return MadeSheet(solid=built.solid, skin=built.skin, measured=measured)
 
 
-def measure_sheets(wanted: Sequence[ToBuild]) -> list[Measured | PanelError]:
+def measure_sheets(wanted: Sequence[Sheet]) -> list[Measured | PanelError]:
     """Measure some for whoever builds them; why one cannot be built is told in its place."""
     found: list[Measured | PanelError] = []
     for one in wanted:
@@ -105,7 +94,7 @@ def measure_sheets(wanted: Sequence[ToBuild]) -> list[Measured | PanelError]:
     return found
 
 
-def make_sheets(wanted: Sequence[ToBuild], told: Told) -> list[MadeSheet]:
+def make_sheets(wanted: Sequence[Sheet], told: Told) -> list[MadeSheet]:
     """Build all, in their order.
 
     Args:
@@ -139,7 +128,7 @@ def _helped(work: _Work) -> Iterator[None]:
 class _Work:
     """Sheets that are checked and measured from both ends, and built here."""
 
-    def __init__(self, wanted: Sequence[ToBuild], told: Told) -> None:
+    def __init__(self, wanted: Sequence[Sheet], told: Told) -> None:
         self._wanted, self._told = wanted, told
         self._made: dict[int, MadeSheet | PanelError] = {}
         self._left = deque(range(len(wanted)))
@@ -176,7 +165,8 @@ class _Work:
     def _built(self, place: int, found: Measured | PanelError) -> MadeSheet | PanelError:
         if isinstance(found, PanelError):
             return found
-        built = build_checked(*self._wanted[place])
+        sheet = self._wanted[place]
+        built = build_checked(sheet.shape, sheet.thickness, sheet.skin_side, sheet.holes)
         return MadeSheet(solid=built.solid, skin=built.skin, measured=found)
 
     def stop(self) -> None:
@@ -214,6 +204,6 @@ class _Work:
         return places
 
 
-def _request(wanted: Sequence[ToBuild]) -> Request:
+def _request(wanted: Sequence[Sheet]) -> Request:
     stage = Stage(file="panels", doing="building", seconds=SECONDS_TO_WORK)
     return Request(work="measure", folder=WITHIN, path=WITHIN, argument=wanted, stages=(stage,))

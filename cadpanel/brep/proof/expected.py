@@ -8,13 +8,12 @@ from typing import Literal
 import numpy as np
 
 from cadpanel.arrays import Array
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.proof.flat_checks import ExpectedFlat
 from cadpanel.brep.proof.hole_checks import ExpectedHoles
 from cadpanel.brep.step.properties import PartData
-from cadpanel.geometry.fixings import Hole
-from cadpanel.geometry.panel import CutPlane, Panel
+from cadpanel.geometry.panel import CutPlane
 from cadpanel.geometry.plane_sides import planes_of
-from cadpanel.geometry.sheet_checks import SkinSide
 from cadpanel.geometry.trays import TrayShape
 
 PatchKind = Literal["plane", "cone", "cylinder"]
@@ -31,16 +30,6 @@ class Fitted:
 
     corners: Array
     cuts: Array
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Sheet:
-    """What a sheet is built from: the panel, its thickness in mm, on which side of the sheet the skin is, and holes."""
-
-    shape: Panel
-    thickness: float
-    skin_side: SkinSide
-    holes: tuple[Hole, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

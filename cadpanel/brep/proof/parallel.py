@@ -17,9 +17,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import cast
 
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.isolation.client import LOOK_UP, READER, Interpreter
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
-from cadpanel.brep.proof.expected import Sheet
 from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.brep.proof.shape_facts import ShapeFacts

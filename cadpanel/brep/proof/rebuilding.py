@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from cadpanel.brep.building.sheet import build_panel
-from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.proof.inspection import boundary_of
 from cadpanel.brep.proof.rebuilt import Rebuilt
 from cadpanel.errors import PanelError

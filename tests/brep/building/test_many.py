@@ -1,10 +1,13 @@
 """Sheets that the second interpreter checks and measures are those that are built by one alone, digit for digit."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cadpanel.brep.building import many
-from cadpanel.brep.building.many import Measured, ToBuild, make_sheets, measure_sheets
+from cadpanel.brep.building.many import Measured, make_sheets, measure_sheets
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.isolation.client import READER
 from cadpanel.brep.kernel.kept import kept_binary
 from cadpanel.errors import DeliveryError, PanelError
@@ -20,7 +23,10 @@ def every_number(monkeypatch):
 
 
 def wanted(count, thickness=3.0):
-    return [ToBuild(shape, thickness, "outer") for shape in random_shapes(feature("plane-cone-plane"), 7, count)]
+    return [
+        Sheet(shape=shape, thickness=thickness, skin_side="outer")
+        for shape in random_shapes(feature("plane-cone-plane"), 7, count)
+    ]
 
 
 def numbers(found):
@@ -49,7 +55,7 @@ def test_with_and_without_help_the_same_sheets_come_in_their_order(monkeypatch):
 def test_of_sheets_that_cannot_be_built_the_first_is_told(places):
     sheets = wanted(7)
     for place in places:
-        sheets[place] = sheets[place]._replace(thickness=-1.0)
+        sheets[place] = replace(sheets[place], thickness=-1.0)
     with pytest.raises(PanelError) as first:
         make_sheets([sheets[places[0]]], lambda _: None)
     with pytest.raises(PanelError) as found:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cadpanel.brep.building.sheet import build_solid
-from cadpanel.brep.proof.expected import Sheet
+from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.proof.parallel import rebuild
 from cadpanel.brep.proof.rebuilding import rebuild as built_here
 from cadpanel.errors import PanelError

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.features.rulings import PanelFeature, Walk
+from cadpanel.features.rulings import PanelFeature, Walk, once
 from cadpanel.geometry.frames import point_velocity
 from cadpanel.geometry.vectors import beside, cross, dot
 
 
+@once
 def cut_planes(walked: Walk) -> tuple[Array, Array]:
     """The cut planes m . x = s: m (panels, ends, 3), not of unit length, and s (panels, ends)."""
     feature = walked.feature
@@ -23,6 +24,7 @@ def cut_planes(walked: Walk) -> tuple[Array, Array]:
     return m, cuts[..., 0] + dot(m, anchor.p)
 
 
+@once
 def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
     """How `cut_planes` follow the numbers: dm (panels, ends, 3, N) and ds (panels, ends, N)."""
     feature, anchor = walked.feature, walked.anchor

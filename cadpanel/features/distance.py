@@ -5,15 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.features.rulings import Walk
-from cadpanel.geometry.cone import (
-    INNER,
-    cone_distance,
-    cone_distance_inner,
-    cone_normal,
-    plane_distance,
-    plane_inner,
-)
+from cadpanel.features.rulings import Walk, once
+from cadpanel.geometry.cone import INNER, Skins
 from cadpanel.geometry.patch_under import HalfWay, half_way, patch_under
 
 
@@ -24,6 +17,7 @@ def assign(walked: Walk, x: Array) -> IntArray:
     return patch_under(x, middle(walked), (walked.edges.p, walked.edges.b))
 
 
+@once
 def middle(walked: Walk) -> HalfWay:
     """The rulings at which panels have turned half of their way: the anchor's where one patch turns alone."""
     feature, anchor, edges = walked.feature, walked.anchor, walked.edges
@@ -32,6 +26,7 @@ def middle(walked: Walk) -> HalfWay:
     return half_way((edges.p, edges.t, edges.n), round_numbers(walked))
 
 
+@once
 def round_numbers(walked: Walk) -> tuple[Array, Array, Array]:
     """(panels, k) radii, half angles and sweeps of the patches; 0 for planes."""
     numbers = np.zeros((3, len(walked.values), len(walked.feature.patches)))
@@ -41,49 +36,50 @@ def round_numbers(walked: Walk) -> tuple[Array, Array, Array]:
     return numbers[0], numbers[1], numbers[2]
 
 
-def patch_distance(walked: Walk, x: Array, patch: int) -> Array:
-    """(panels, m) signed distance of points x (3, panels, m) to the whole surface of one patch, positive outside."""
-    p, t, n = _carrier(walked, patch)
-    if not walked.feature.curved[patch]:
-        return plane_distance(x, p, n)
-    return cone_distance(x, p, t, n, *_cone(walked, patch))
+@once
+def skin_numbers(walked: Walk) -> Array:
+    """(panels, k, 11) the patches in numbers: t, n, p of the ruling, radius and half angle (0 of planes)."""
+    rulings, (radius, half_angle, _) = walked.carriers.frames, round_numbers(walked)
+    numbers = np.empty((*rulings.shape[:2], 11))
+    numbers[:, :, :9] = rulings[:, :, 1:].reshape(*rulings.shape[:2], 9)
+    numbers[:, :, 9], numbers[:, :, 10] = radius, half_angle
+    return numbers
+
+
+def skins_under(walked: Walk, patch: IntArray) -> Skins:
+    """The patches (panels, m) of points, each with its point."""
+    numbers, curved = skin_numbers(walked), walked.feature.curved
+    if len(curved) == 1:
+        return Skins.of_rows(np.moveaxis(numbers, 2, 0), curved[0])
+    flat = np.ascontiguousarray(numbers.reshape(-1, 11).T)
+    place = np.arange(len(numbers))[:, None] * len(curved) + patch
+    return Skins.of_rows(np.take(flat, place, axis=1), all(curved) or np.array(curved)[patch])
 
 
 def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Array]:
-    """As `patch_distance`, and the derivative (panels, m, 8) by the patch's eight inner numbers."""
-    p, t, n = _carrier(walked, patch)
-    if not walked.feature.curved[patch]:
-        return plane_distance(x, p, n), plane_inner(x, n)
-    return cone_distance_inner(x, p, t, n, *_cone(walked, patch))
+    """Signed distance (panels, m) of points x (3, panels, m) to the whole surface of one patch, positive outside.
+
+    And the derivative (panels, m, 8) by the patch's eight inner numbers.
+    """
+    rows = np.moveaxis(skin_numbers(walked)[:, patch], 1, 0)[:, :, None]
+    distance, inner = Skins.of_rows(rows, walked.feature.curved[patch]).distance_inner(x)
+    return distance, np.moveaxis(inner, 0, 2)
 
 
-def patch_outer(walked: Walk, patch: int) -> Array:
-    """(panels, 8, N) how a patch's eight inner numbers (twist of its ruling, radius, half angle) follow the numbers."""
-    if walked.carriers.twist is None:
+@once
+def patch_outers(walked: Walk) -> Array:
+    """(panels, k, 8, N) how the patches' inner numbers (twist of the ruling, radius, half angle) follow the numbers."""
+    twist = walked.carriers.twist
+    if twist is None:
         raise ValueError("the panels were walked without derivatives")
-    outer = np.zeros((len(walked.values), INNER, walked.values.shape[1]))
-    outer[:, :6] = walked.carriers.twist[:, patch]
-    if walked.feature.curved[patch]:
-        outer[:, 6:, walked.feature.patch_slice(patch)] = walked.dimensions[patch].by_numbers()[..., :2, :]
+    outer = np.zeros((*twist.shape[:2], INNER, twist.shape[3]))
+    outer[:, :, :6] = twist
+    for i, curved in enumerate(walked.feature.curved):
+        if curved:
+            outer[:, i, 6:, walked.feature.patch_slice(i)] = walked.dimensions[i].by_numbers()[..., :2, :]
     return outer
 
 
 def skin_normals(walked: Walk, x: Array, patch: IntArray) -> Array:
     """(panels, m, 3) the skin's unit normals at the foot points of points x (3, panels, m) on their patches."""
-    normals = np.empty((*patch.shape, 3))
-    for i, curved in enumerate(walked.feature.curved):
-        p, t, n = _carrier(walked, i)
-        here = cone_normal(x, p, t, n, *_cone(walked, i)) if curved else n[:, None]
-        normals = np.where((patch == i)[..., None], here, normals)
-    return normals
-
-
-def _cone(walked: Walk, patch: int) -> tuple[Array, Array]:
-    """Radius and half angle (panels,) of a curved patch."""
-    values = walked.dimensions[patch].values
-    return values[:, 0], values[:, 1]
-
-
-def _carrier(walked: Walk, patch: int) -> tuple[Array, Array, Array]:
-    carriers = walked.carriers
-    return carriers.p[:, patch], carriers.t[:, patch], carriers.n[:, patch]
+    return np.moveaxis(np.broadcast_to(skins_under(walked, patch).normals(x), x.shape), 0, 2)

@@ -7,7 +7,7 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
 from cadpanel.features.cut_planes import cut_plane_rates
-from cadpanel.features.distance import patch_distance_inner, patch_outer
+from cadpanel.features.distance import patch_distance_inner, patch_outers
 from cadpanel.features.numbers import POWERS
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import DIMENSIONS
@@ -79,7 +79,7 @@ def motions(feature: PanelFeature, values: Array) -> Array:
             points = np.concatenate([points, at_arcs.position[:, own]], axis=1)
             arc += len(ARC_SHARES)
         _, inner = patch_distance_inner(walked, np.moveaxis(points, 2, 0), patch)
-        rows.append(inner @ patch_outer(walked, patch))
+        rows.append(inner @ patch_outers(walked)[:, patch])
     assert at_rulings.jacobian is not None
     rows.append(_flat(at_rulings.jacobian[:, [0, last, last + 1, -1]]))
     rows += [_flat(rates) for rates in cut_plane_rates(walked)]

@@ -15,7 +15,7 @@ from cadpanel.features.panel_edges import Edge, polygon_edges
 from cadpanel.features.patches import Patch, Plane
 from cadpanel.features.placed import Placed
 from cadpanel.features.rulings import Points, Rulings, Walk
-from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
+from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity, skew
 from cadpanel.geometry.shape import PolygonShape
 
 MOST_CORNERS = 64
@@ -115,19 +115,18 @@ class Polygon:
         panels = len(values)
         turn = np.concatenate([values[:, 1:3], np.zeros((panels, 1))], axis=1)
         axes = cayley(turn)
-        p = np.zeros((panels, 1, 3))
-        p[:, 0, 2] = values[:, 0]
+        frames = np.zeros((panels, 1, 4, 3))
+        frames[:, 0, :3] = np.swapaxes(axes, 1, 2)
+        frames[:, 0, 3, 2] = values[:, 0]
         twist = None
         if derivatives:
             twist = np.zeros((panels, 1, 6, values.shape[1]))
             twist[:, 0, 5, 0] = 1.0
             rates = cayley_rates(turn)[:, :, :2]
             twist[:, 0, :3, 1:3] = rates
-            twist[:, 0, 3:, 1:3] = np.cross(p[:, 0, :, None], rates, axisa=1, axisb=1, axisc=1)
-        plane = Rulings(p, axes[:, None, :, 0], axes[:, None, :, 1], axes[:, None, :, 2], twist)
-        empty = np.zeros((panels, 0, 3))
-        none = Rulings(empty, empty, empty, empty, None if twist is None else twist[:, :0])
-        return Walk(self, values, (), plane, none, plane)
+            twist[:, 0, 3:, 1:3] = skew(frames[:, 0, 3]) @ rates
+        plane = Rulings(frames, twist)
+        return Walk(self, values, (), plane, plane.at(slice(0)), plane)
 
     def corners(self, walked: Walk) -> Points:
         """The corners (n, corners, 3) of walked panels."""

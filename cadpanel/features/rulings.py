@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, Protocol, Self, runtime_checkable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import wraps
+from typing import Any, Literal, Protocol, Self, TypeVar, runtime_checkable
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.numbers import Number
@@ -14,6 +15,7 @@ from cadpanel.features.placed import Placed
 from cadpanel.geometry.panel import Panel
 
 Cuts = Literal["mitre", "upright", "parallel", "square"]
+Found = TypeVar("Found")
 
 
 @runtime_checkable
@@ -110,15 +112,40 @@ class Rulings:
     """n x R ruling frames and their twists.
 
     Attributes:
-        p, b, t, n: (panels, R, 3) each.
+        frames: (panels, R, 4, 3) rows b, t, n and p of each.
         twist: (panels, R, 6, N) for the N numbers of the feature, or None where no derivatives were asked for.
     """
 
-    p: Array
-    b: Array
-    t: Array
-    n: Array
+    frames: Array
     twist: Array | None
+
+    @property
+    def b(self) -> Array:
+        """(panels, R, 3) the binormals."""
+        return self.frames[:, :, 0]
+
+    @property
+    def t(self) -> Array:
+        """(panels, R, 3) the directions."""
+        return self.frames[:, :, 1]
+
+    @property
+    def n(self) -> Array:
+        """(panels, R, 3) the skin's normals."""
+        return self.frames[:, :, 2]
+
+    @property
+    def p(self) -> Array:
+        """(panels, R, 3) a point on each."""
+        return self.frames[:, :, 3]
+
+    def at(self, rulings: IntArray | slice) -> Rulings:
+        """Some of the rulings."""
+        return Rulings(self.frames[:, rulings], None if self.twist is None else self.twist[:, rulings])
+
+    def of(self, panels: slice) -> Rulings:
+        """Those of some of the panels."""
+        return Rulings(self.frames[panels], None if self.twist is None else self.twist[panels])
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +159,7 @@ class Walk:
         anchor: the ruling in the middle of the anchor patch (R = 1).
         edges: the k + 1 rulings that bound the patches, from side 0 to side 1.
         carriers: per patch the ruling that its radius is measured at (R = k).
+        kept: what was worked out of the walk, see `once`.
     """
 
     feature: PanelFeature
@@ -140,6 +168,23 @@ class Walk:
     anchor: Rulings
     edges: Rulings
     carriers: Rulings
+    kept: dict[Callable[..., object], Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+
+def once(function: Callable[[Walk], Found]) -> Callable[[Walk], Found]:
+    """Work something out of a walk when it is first asked for, and keep it with the walk: several terms ask.
+
+    Nobody may write into it.
+    """
+
+    @wraps(function)
+    def kept(walked: Walk) -> Found:
+        if function not in walked.kept:
+            walked.kept[function] = function(walked)
+        found: Found = walked.kept[function]
+        return found
+
+    return kept
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,33 +10,17 @@ from __future__ import annotations
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.features.carrying import Frames, carry
+from cadpanel.features.carrying import POINT, carry, moves_over
 from cadpanel.features.cut_planes import carried, cut_plane_rates, cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import Dimensions
-from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk
-from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity
-from cadpanel.geometry.vectors import beside, cross, dot
+from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk, once
+from cadpanel.features.ways import plan_of
+from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity, skew
+from cadpanel.geometry.vectors import beside
 
 # Panels differentiated together: what is needed on the way stays in the processor's cache and off the system's memory.
 _CHUNK = 256
-
-
-class _Step:
-    """A frame batch underway, with its accumulated twist."""
-
-    def __init__(self, frames: Frames, twist: Array | None) -> None:
-        self.frames = frames
-        self.twist = twist
-
-    def carry(self, feature: PanelFeature, patch: int, dimensions: Dimensions, way: float) -> _Step:
-        frames, own = carry(feature.patches[patch].kind, self.frames, dimensions.values, way)
-        if self.twist is None:
-            return _Step(frames, None)
-        # The patch's numbers may already act on the frame that is carried on (the anchor's radius, say): they add.
-        twist = self.twist.copy()
-        twist[:, :, feature.patch_slice(patch)] += own if dimensions.rates is None else own @ dimensions.rates
-        return _Step(frames, twist)
 
 
 def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
@@ -47,92 +31,83 @@ def walk(feature: PanelFeature, values: Array, *, derivatives: bool) -> Walk:
         values: (panels, N) all numbers of the feature.
         derivatives: whether twists are wanted.
     """
+    plan, count = plan_of(feature.anchor, feature.curved), len(feature.patches)
     dimensions = tuple(patch.dimensions(values[:, feature.patch_slice(i)]) for i, patch in enumerate(feature.patches))
-    start = _anchor(feature, values, derivatives)
-    last = len(feature.patches) - 1
-    edges: dict[int, _Step] = {}
-    for side in (-1, 1):
-        step = start.carry(feature, feature.anchor, dimensions[feature.anchor], 0.5 * side)
-        edges[feature.anchor + (side > 0)] = step
-        patch = feature.anchor + side
-        while 0 <= patch <= last:
-            step = step.carry(feature, patch, dimensions[patch], float(side))
-            edges[patch + (side > 0)] = step
-            patch += side
-    carriers = [start if i == feature.anchor else edges[i if i > feature.anchor else i + 1] for i in range(last + 1)]
-    return Walk(
-        feature,
-        values,
-        dimensions,
-        _stack([start]),
-        _stack([edges[i] for i in range(last + 2)]),
-        _stack(carriers),
-    )
+    moves = [
+        moves_over(
+            ways.kind, beside([dimensions[i].values for i in ways.patches]), ways.shares, derivatives=derivatives
+        )
+        for ways in plan.kinds
+    ]
+    frames = np.empty((len(values), count + 2, 4, 3))
+    frames[:, -1] = _anchor(values)
+    for kind, place, start, end in plan.order:
+        frames[:, end] = carry(moves[kind].frames[:, place], frames[:, start])
+    twist = None
+    if derivatives:
+        twist = np.repeat(_anchor_twist(values, len(feature.numbers))[:, None], count + 2, axis=1)
+        for ways, made in zip(plan.kinds, moves, strict=True):
+            own = made.twists(frames[:, ways.starts])
+            # The patch's numbers may already act on the frame that is carried on (the anchor's radius, say): they add.
+            for place, patch in enumerate(ways.patches):
+                by_numbers = _by_numbers(own[:, place], dimensions[patch])
+                twist[:, ways.beyond[place], :, feature.patch_slice(patch)] += by_numbers[:, None]
+    rulings = Rulings(frames, twist)
+    anchor, edges = rulings.at(slice(-1, None)), rulings.at(slice(-1))
+    return Walk(feature, values, dimensions, anchor, edges, rulings.at(plan.carriers))
 
 
+def _by_numbers(twist: Array, dimensions: Dimensions) -> Array:
+    """Twists (n, 6, numbers) for a patch's own numbers, of those (n, 6, d) for its dimensions."""
+    return twist if dimensions.rates is None else twist @ dimensions.rates
+
+
+def _anchor(values: Array) -> Array:
+    """(panels, 4, 3) the frames in the middle of the anchor patch."""
+    frames = np.zeros((len(values), 4, 3))
+    frames[:, :POINT] = np.swapaxes(cayley(values[:, 2:5]), 1, 2)
+    frames[:, POINT, ::2] = values[:, :2]
+    return frames
+
+
+def _anchor_twist(values: Array, count: int) -> Array:
+    """(panels, 6, N) how the frames in the middle of the anchor patch follow their numbers."""
+    twist = np.zeros((len(values), 6, count))
+    twist[:, 3, 0] = twist[:, 5, 1] = 1.0
+    rates, p = cayley_rates(values[:, 2:5]), np.zeros((len(values), 3))
+    p[:, ::2] = values[:, :2]
+    twist[:, :3, 2:5], twist[:, 3:, 2:5] = rates, skew(p) @ rates
+    return twist
+
+
+@once
 def arc_rulings(walked: Walk) -> Rulings:
     """The rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
 
-    All of a patch in one go; only seams ask for them, and half of the time of a walk would go by here.
+    All of them in one go; only seams ask for them.
     """
-    parts = [_inside(walked, i) for i, curved in enumerate(walked.feature.curved) if curved]
-    if not parts:
-        return _none(walked)
-    p, b, t, n = (np.concatenate([getattr(part, axis) for part in parts], axis=1) for axis in "pbtn")
-    twists = [part.twist for part in parts if part.twist is not None]
-    return Rulings(p, b, t, n, np.concatenate(twists, axis=1) if twists else None)
-
-
-def _inside(walked: Walk, patch: int) -> Rulings:
-    """Those of one patch, carried on from the ruling that its radius is measured at."""
-    feature, carriers, panels, count = walked.feature, walked.carriers, len(walked.values), len(ARC_SHARES)
-    from_first = {feature.anchor: -0.5}.get(patch, 0.0 if patch > feature.anchor else -1.0)
-    shares = np.tile(np.array(ARC_SHARES) + from_first, panels)
-
-    def repeated(one: Array) -> Array:
-        return np.repeat(one, count, axis=0)
-
-    frames = Frames(*(repeated(getattr(carriers, axis)[:, patch]) for axis in "pbtn"))
-    dimensions, own = walked.dimensions[patch], feature.patch_slice(patch)
-    frames, moves = carry(feature.patches[patch].kind, frames, repeated(dimensions.values), shares)
-    p, b, t, n = (getattr(frames, axis).reshape(panels, count, 3) for axis in "pbtn")
+    feature, anchor = walked.feature, walked.feature.anchor
+    curved = [i for i, bent in enumerate(feature.curved) if bent]
+    if not curved:
+        return walked.edges.at(slice(0))
+    # Their shares begin at a patch's first ruling, ways at the one that its radius is measured at.
+    begin = np.array([-0.5 if i == anchor else -1.0 if i < anchor else 0.0 for i in curved])
+    ways = begin[:, None] + np.array(ARC_SHARES)
+    sizes = beside([walked.dimensions[i].values for i in curved])
+    carriers = walked.carriers.at(np.array(curved))
+    starts = carriers.frames[:, :, None]
+    moves = moves_over(
+        "cone", sizes[:, :, None] + np.zeros((len(ARC_SHARES), 1)), ways, derivatives=carriers.twist is not None
+    )
+    frames = carry(moves.frames, starts).reshape(len(starts), -1, 4, 3)
     if carriers.twist is None:
-        return Rulings(p, b, t, n, None)
-    moves = moves.reshape(panels, count, 6, -1)
-    twist = np.repeat(carriers.twist[:, patch, None], count, axis=1)
-    twist[..., own] += moves if dimensions.rates is None else moves @ dimensions.rates[:, None]
-    return Rulings(p, b, t, n, twist)
-
-
-def _anchor(feature: PanelFeature, values: Array, derivatives: bool) -> _Step:
-    panels = len(values)
-    shift, turn = values[:, :2], values[:, 2:5]
-    rotation = cayley(turn)
-    p = beside([shift[:, 0], np.zeros(panels), shift[:, 1]])
-    frames = Frames(p, rotation[:, :, 0], rotation[:, :, 1], rotation[:, :, 2])
-    if not derivatives:
-        return _Step(frames, None)
-    twist = np.zeros((panels, 6, len(feature.numbers)))
-    twist[:, 3, 0] = 1.0
-    twist[:, 5, 1] = 1.0
-    rates = cayley_rates(turn)
-    twist[:, :3, 2:5] = rates
-    for j in range(3):
-        twist[:, 3:, 2 + j] = cross(p, rates[:, :, j])
-    return _Step(frames, twist)
-
-
-def _stack(steps: list[_Step]) -> Rulings:
-    p, b, t, n = (beside([getattr(step.frames, axis) for step in steps]) for axis in "pbtn")
-    twists = [step.twist for step in steps if step.twist is not None]
-    return Rulings(p, b, t, n, beside(twists) if twists else None)
-
-
-def _none(like: Walk) -> Rulings:
-    """No rulings at all, for as many panels."""
-    empty = np.zeros((len(like.values), 0, 3))
-    twist = None if like.edges.twist is None else like.edges.twist[:, :0]
-    return Rulings(empty, empty, empty, empty, twist)
+        return Rulings(frames, None)
+    own, twist = moves.twists(starts), np.repeat(carriers.twist[:, :, None], len(ARC_SHARES), axis=2)
+    for place, patch in enumerate(curved):
+        rates = walked.dimensions[patch].rates
+        turned = own[:, place] if rates is None else own[:, place] @ rates[:, None]
+        twist[:, place, :, :, feature.patch_slice(patch)] += turned
+    return Rulings(frames, twist.reshape(*frames.shape[:2], *twist.shape[3:]))
 
 
 def end_points(walked: Walk, rulings: Rulings) -> Points:
@@ -142,9 +117,9 @@ def end_points(walked: Walk, rulings: Rulings) -> Points:
     the velocity V; sliding along t to stay in the plane adds t (ds - dm . c - m . V) / (m . t). Derivatives are exact.
     """
     m, s = cut_planes(walked)
-    panels, count = rulings.p.shape[:2]
-    rate = dot(m[:, :, None], rulings.t[:, None])
-    slide = (s[..., None] - dot(m[:, :, None], rulings.p[:, None])) / rate
+    panels, count = rulings.frames.shape[:2]
+    rate = m @ np.swapaxes(rulings.t, 1, 2)
+    slide = (s[..., None] - m @ np.swapaxes(rulings.p, 1, 2)) / rate
     position = rulings.p[:, None] + slide[..., None] * rulings.t[:, None]
     if rulings.twist is None:
         return Points(position.reshape(panels, 2 * count, 3), None)

@@ -8,6 +8,8 @@ moved by a twist (omega, v) the distance changes by -(e . v + (x x e) . omega).
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
@@ -16,75 +18,122 @@ from cadpanel.arrays import Array, BoolArray
 INNER = 8
 
 
+@dataclass(frozen=True, slots=True)
+class Skins:
+    """Planes and cones that points lie over, one for each point or for several; vectors run along the first axis.
+
+    Attributes:
+        t, n, p: (3, ...) the rulings that they are measured at.
+        radius, half_angle: (...) of cones.
+        curved: (...) whether it is a cone; True or False for all of them.
+    """
+
+    t: Array
+    n: Array
+    p: Array
+    radius: Array
+    half_angle: Array
+    curved: BoolArray | bool
+
+    @staticmethod
+    def of_rows(rows: Array, curved: BoolArray | bool) -> Skins:
+        """Those with the numbers t, n, p, radius and half angle (11, ...)."""
+        return Skins(rows[:3], rows[3:6], rows[6:9], rows[9], rows[10], curved)
+
+    @staticmethod
+    def of_panels(p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Skins:
+        """A cone for each panel: p, t, n (panels, 3), radius and half angle (panels,)."""
+        t, n, p = (axis.T[:, :, None] for axis in (t, n, p))
+        return Skins(t, n, p, radius[:, None], half_angle[:, None], curved=True)
+
+    def distance(self, x: Array) -> Array:
+        """(...) signed distances of points x (3, ...)."""
+        if self.curved is False:
+            return inner_product(x - self.p, self.n)
+        _, _, rho, z = self._parts(x)
+        bent = self._apart(rho, z)
+        return bent if self.curved is True else np.where(self.curved, bent, inner_product(x - self.p, self.n))
+
+    def distance_inner(self, x: Array) -> tuple[Array, Array]:
+        """The same, and (8, ...) the derivatives by the twist of the ruling, the radius and the half angle."""
+        inner = np.zeros((INNER, *x.shape[1:]))
+        if self.curved is False:
+            return inner_product(x - self.p, self.n), _by_twist(inner, x, self.n)
+        axis, radial, rho, z = self._parts(x)
+        sign, cosine, sine = np.sign(self.radius), np.cos(self.half_angle), np.sin(self.half_angle)
+        inverse = sign * cosine / np.maximum(rho, np.finfo(float).tiny)
+        normal = inverse * radial - sine * axis
+        # The axis tilts by da = -(sin(g) t + cos(g) n); da is at right angles to a.
+        outward = -inner_product(radial, sine * self.t + cosine * self.n)
+        inner[6] = inner_product(normal, self.n) - 1.0
+        inner[7] = -sign * rho * sine - z * cosine - (inverse * z + sine) * outward
+        distance = self._apart(rho, z)
+        if self.curved is not True:
+            distance = np.where(self.curved, distance, inner_product(x - self.p, self.n))
+            normal = np.where(self.curved, normal, self.n)
+            inner[6:] *= self.curved
+        return distance, _by_twist(inner, x, normal)
+
+    def normals(self, x: Array) -> Array:
+        """(3, ...) unit normals under points x (3, ...), on the side of n."""
+        axis, radial, rho, _ = self._parts(x)
+        scale = np.sign(self.radius) * np.cos(self.half_angle) / np.maximum(rho, np.finfo(float).tiny)
+        bent = scale * radial - np.sin(self.half_angle) * axis
+        return bent if self.curved is True else np.where(self.curved, bent, self.n)
+
+    def _parts(self, x: Array) -> tuple[Array, Array, Array, Array]:
+        """Of cones the axis (3, ...); the way from there square to it (3, ...) and its length; how far along it."""
+        axis = np.cos(self.half_angle) * self.t - np.sin(self.half_angle) * self.n
+        y = x - (self.p - self.radius * self.n)
+        z = inner_product(y, axis)
+        radial = y - z * axis
+        return axis, radial, np.sqrt(inner_product(radial, radial)), z
+
+    def _apart(self, rho: Array, z: Array) -> Array:
+        away = np.sign(self.radius) * rho * np.cos(self.half_angle) - z * np.sin(self.half_angle)
+        return np.asarray(away - self.radius)
+
+
+def _by_twist(inner: Array, x: Array, normal: Array) -> Array:
+    """Derivatives (8, ...) by twists filled in: -(x cross e), -e."""
+    (x0, x1, x2), (e0, e1, e2) = x, normal
+    inner[0], inner[1], inner[2] = e1 * x2 - e2 * x1, e2 * x0 - e0 * x2, e0 * x1 - e1 * x0
+    np.negative(normal, out=inner[3:6])
+    return inner
+
+
+def inner_product(first: Array, second: Array) -> Array:
+    """(...) of vectors (3, ...)."""
+    product: Array = first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
+    return product
+
+
 def plane_distance(x: Array, p: Array, n: Array) -> Array:
     """Signed distance of x (3, panels, m) to the planes through p with normals n, both (panels, 3)."""
-    px, py, pz = (p[:, i, None] for i in range(3))
-    nx, ny, nz = (n[:, i, None] for i in range(3))
-    distance: Array = (x[0] - px) * nx + (x[1] - py) * ny + (x[2] - pz) * nz
-    return distance
+    return inner_product(x - p.T[:, :, None], n.T[:, :, None])
 
 
 def plane_inner(x: Array, n: Array) -> Array:
     """(panels, m, 8) derivative of `plane_distance` by the plane's twist; the last two numbers do not matter."""
-    nx, ny, nz = (np.broadcast_to(n[:, i, None], x.shape[1:]) for i in range(3))
-    return _inner(x, nx, ny, nz, 0.0, 0.0)
+    return np.moveaxis(_by_twist(np.zeros((INNER, *x.shape[1:])), x, n.T[:, :, None]), 0, 2)
 
 
 def cone_distance(x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Array:
     """Signed distance of x (3, panels, m) to cones; p, t, n (panels, 3), radius and half_angle (panels,)."""
-    _, _, rho, z = _cone_parts(x, p, t, n, radius, half_angle)
-    return _distance(rho, z, radius, half_angle)
+    return Skins.of_panels(p, t, n, radius, half_angle).distance(x)
 
 
 def cone_distance_inner(
     x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array
 ) -> tuple[Array, Array]:
     """As `cone_distance`, and its derivative (panels, m, 8) by the ruling's twist, the radius and the half angle."""
-    axis, radial, rho, z = _cone_parts(x, p, t, n, radius, half_angle)
-    sign, cosine, sine = np.sign(radius)[:, None], np.cos(half_angle)[:, None], np.sin(half_angle)[:, None]
-    inverse = sign * cosine / np.maximum(rho, np.finfo(float).tiny)
-    ex, ey, ez = (inverse * radial[i] - sine * axis[:, i, None] for i in range(3))
-    by_radius = ex * n[:, 0, None] + ey * n[:, 1, None] + ez * n[:, 2, None] - 1.0
-    # The axis tilts by da = -(sin(g) t + cos(g) n); da is at right angles to a.
-    tilt = -(np.sin(half_angle)[:, None] * t + np.cos(half_angle)[:, None] * n)
-    outward = sum(radial[i] * tilt[:, i, None] for i in range(3))
-    by_angle = -sign * rho * sine - z * cosine - inverse * z * outward - sine * outward
-    return _distance(rho, z, radius, half_angle), _inner(x, ex, ey, ez, by_radius, by_angle)
+    distance, inner = Skins.of_panels(p, t, n, radius, half_angle).distance_inner(x)
+    return distance, np.moveaxis(inner, 0, 2)
 
 
 def cone_normal(x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Array:
     """(panels, m, 3) unit normals of the cones under x (3, panels, m), on the side of n."""
-    axis, radial, rho, _ = _cone_parts(x, p, t, n, radius, half_angle)
-    scale = (np.sign(radius) * np.cos(half_angle))[:, None] / np.maximum(rho, np.finfo(float).tiny)
-    sine = np.sin(half_angle)[:, None]
-    return np.stack([scale * radial[i] - sine * axis[:, i, None] for i in range(3)], axis=-1)
-
-
-def _cone_parts(
-    x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array
-) -> tuple[Array, list[Array], Array, Array]:
-    axis = np.cos(half_angle)[:, None] * t - np.sin(half_angle)[:, None] * n
-    centre = p - radius[:, None] * n
-    y = [x[i] - centre[:, i, None] for i in range(3)]
-    z = sum(y[i] * axis[:, i, None] for i in range(3))
-    radial = [y[i] - z * axis[:, i, None] for i in range(3)]
-    rho = np.sqrt(radial[0] ** 2 + radial[1] ** 2 + radial[2] ** 2)
-    return axis, radial, rho, np.asarray(z)
-
-
-def _distance(rho: Array, z: Array, radius: Array, half_angle: Array) -> Array:
-    cosine, sine = np.cos(half_angle)[:, None], np.sin(half_angle)[:, None]
-    return np.sign(radius)[:, None] * rho * cosine - z * sine - radius[:, None]
-
-
-def _inner(x: Array, ex: Array, ey: Array, ez: Array, by_radius: Array | float, by_angle: Array | float) -> Array:
-    inner = np.empty((*x.shape[1:], INNER))
-    inner[..., 0] = ey * x[2] - ez * x[1]
-    inner[..., 1] = ez * x[0] - ex * x[2]
-    inner[..., 2] = ex * x[1] - ey * x[0]
-    inner[..., 3], inner[..., 4], inner[..., 5] = -ex, -ey, -ez
-    inner[..., 6], inner[..., 7] = by_radius, by_angle
-    return inner
+    return np.moveaxis(Skins.of_panels(p, t, n, radius, half_angle).normals(x), 0, 2)
 
 
 def beyond(x: Array, p: Array, b: Array) -> BoolArray:

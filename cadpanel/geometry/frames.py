@@ -14,6 +14,19 @@ import numpy as np
 from cadpanel.arrays import Array
 from cadpanel.geometry.vectors import cross, dot
 
+# What a vector is multiplied by for the entries of [w], row by row, and for -[w] beside a unit matrix, and that matrix.
+_SKEW = np.array(
+    [[0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]], dtype=float
+)
+_VELOCITY = np.concatenate([-_SKEW.reshape(3, 3, 3), np.zeros((3, 3, 3))], axis=2).reshape(3, 18)
+_STANDING = np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1)
+
+
+def skew(w: Array) -> Array:
+    """Matrices (..., 3, 3) with [w] x = w cross x, of vectors w (..., 3)."""
+    matrices: Array = (w @ _SKEW).reshape(*w.shape, 3)
+    return matrices
+
 
 def cayley(w: Array) -> Array:
     """Rotation matrices (..., 3, 3) of the Gibbs-Rodrigues vectors w (..., 3), |w| = 2 tan(angle / 2).
@@ -23,23 +36,14 @@ def cayley(w: Array) -> Array:
     """
     h = 0.5 * w
     square = dot(h, h)[..., None, None]
-    skew = np.zeros((*w.shape, 3))
-    skew[..., 0, 1], skew[..., 0, 2] = -h[..., 2], h[..., 1]
-    skew[..., 1, 0], skew[..., 1, 2] = h[..., 2], -h[..., 0]
-    skew[..., 2, 0], skew[..., 2, 1] = -h[..., 1], h[..., 0]
     outer = h[..., :, None] * h[..., None, :]
-    return ((1.0 - square) * np.eye(3) + 2.0 * outer + 2.0 * skew) / (1.0 + square)
+    return ((1.0 - square) * np.eye(3) + 2.0 * (outer + skew(h))) / (1.0 + square)
 
 
 def cayley_rates(w: Array) -> Array:
     """(..., 3, 3) whose column j is the angular velocity omega of cayley(w) when w[j] grows at unit rate."""
     h = 0.5 * w
-    scale = 1.0 / (1.0 + dot(h, h))
-    rates = np.zeros((*w.shape, 3))
-    for j in range(3):
-        unit = np.zeros(3)
-        unit[j] = 1.0
-        rates[..., :, j] = scale[..., None] * (unit + cross(h, np.broadcast_to(unit, h.shape)))
+    rates: Array = (np.eye(3) + skew(h)) / (1.0 + dot(h, h))[..., None, None]
     return rates
 
 
@@ -56,12 +60,7 @@ def rotation_twist(axis: Array, point: Array) -> Array:
 
 def point_velocity(twist: Array, point: Array) -> Array:
     """(..., 3, N) velocity of `point` (..., 3) under the N twists in the columns of `twist` (..., 6, N)."""
-    x, y, z = (point[..., i] for i in range(3))
     # As one product of matrices: twice as fast as component by component, and half of a walk's time goes by here.
-    velocity = np.zeros((*point.shape[:-1], 3, 6))
-    velocity[..., 0, 1], velocity[..., 0, 2] = z, -y
-    velocity[..., 1, 2], velocity[..., 1, 0] = x, -z
-    velocity[..., 2, 0], velocity[..., 2, 1] = y, -x
-    velocity[..., [0, 1, 2], [3, 4, 5]] = 1.0
+    velocity = (point @ _VELOCITY).reshape(*point.shape, 6) + _STANDING
     moved: Array = velocity @ twist
     return moved

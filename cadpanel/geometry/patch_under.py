@@ -9,7 +9,7 @@ import numpy as np
 from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.cone import beyond
 from cadpanel.geometry.frames import rotate_about
-from cadpanel.geometry.vectors import cross
+from cadpanel.geometry.vectors import cross, dot
 
 # Patches that do not turn at all count this much, radians: where none does, any of them may be the middle.
 _NO_TURN = 1e-12
@@ -71,7 +71,10 @@ def patch_under(x: Array, middle: HalfWay, rulings: tuple[Array, Array]) -> IntA
     begin = middle.patch[:, None]
     patch = np.broadcast_to(begin, right.shape).copy()
     last = p.shape[1] - 1
-    past = {i: beyond(x, p[:, i], b[:, i]) for i in range(1, last)}
+    inner = b[:, 1:last]
+    # One row of the middle for each inner ruling; the first ruling is asked of nobody.
+    apart = inner @ np.swapaxes(x, 0, 1) - dot(p[:, 1:last], inner)[..., None]
+    past = [right, *np.moveaxis(apart > 0.0, 1, 0)]
     passed = right
     for i in range(int(middle.patch.min()) + 1, last):
         asked = i > begin

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.features.distance import assign, patch_distance, patch_distance_inner, patch_outer
+from cadpanel.features.distance import assign, patch_outers, skins_under
 from cadpanel.features.layout import Group, Layout
-from cadpanel.features.rulings import Rulings, Walk
-from cadpanel.geometry.cone import INNER, plane_distance
+from cadpanel.features.rulings import Walk
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.state import State
@@ -34,6 +33,22 @@ class _Chunk:
     roots: Array
     panels: IntArray
     allowed: tuple[IntArray, IntArray] | None
+
+    @property
+    def outer(self) -> Array:
+        """(n, k, 8, unknowns) how the inner numbers of the patches follow the unknowns."""
+        return self.walked.feature.by_unknowns(patch_outers(self.walked))
+
+    def linear(self) -> tuple[Array, Array, Array]:
+        """Residuals (n, m), how they follow the numbers of their own patches (n, 8, m), and that by patch (n, k, 8, m).
+
+        The latter is zero for samples of other patches.
+        """
+        patch = self.assign()
+        distance, inner = skins_under(self.walked, patch).distance_inner(self.samples)
+        rows = np.moveaxis(inner * self.roots, 0, 1)
+        mine = patch[:, None] == np.arange(len(self.walked.feature.patches))[:, None]
+        return distance * self.roots, rows, rows[:, None] * mine[:, :, None]
 
     def assign(self) -> IntArray:
         """The patch (n, m) of each sample, as near as it is allowed to the one under its foot point."""
@@ -69,61 +84,44 @@ class Deviation:
         distance, patches = np.zeros(self.roots.shape), np.zeros(self.roots.shape, dtype=np.intp)
         for chunk in self._chunks(state):
             patch = chunk.assign() if held else assign(chunk.walked, chunk.samples)
-            own = np.zeros(patch.shape)
-            for i in range(len(chunk.walked.feature.patches)):
-                own = np.where(patch == i, patch_distance(chunk.walked, chunk.samples, i), own)
-            distance[chunk.panels], patches[chunk.panels] = own, patch
+            distance[chunk.panels] = skins_under(chunk.walked, patch).distance(chunk.samples)
+            patches[chunk.panels] = patch
         return distance, patches
 
     def cost(self, state: State) -> Array:
         """See `Term.cost`."""
         cost = np.zeros(len(self.roots))
         for chunk in self._chunks(state):
-            patch = chunk.assign()
-            total = np.zeros(len(chunk.panels))
-            for i in range(len(chunk.walked.feature.patches)):
-                weighted = np.where(patch == i, chunk.roots, 0.0) * patch_distance(chunk.walked, chunk.samples, i)
-                total += 0.5 * np.einsum("pm,pm->p", weighted, weighted)
-            cost[chunk.panels] = total
+            residual = chunk.roots * skins_under(chunk.walked, chunk.assign()).distance(chunk.samples)
+            cost[chunk.panels] = 0.5 * np.einsum("pm,pm->p", residual, residual)
         return cost
 
     def add_to(self, normal: Normal, state: State) -> Array:
         """See `Term.add_to`; the chain rule is applied to the summed 8 x 8 moments of each patch, not to every row."""
         cost = np.zeros(len(self.roots))
         for chunk in self._chunks(state):
-            walked, feature = chunk.walked, chunk.walked.feature
-            patch = chunk.assign()
-            count = len(feature.free)
-            gradient, square = np.zeros((len(chunk.panels), count)), np.zeros((len(chunk.panels), count, count))
-            total = np.zeros(len(chunk.panels))
-            for i in range(len(feature.patches)):
-                root = np.where(patch == i, chunk.roots, 0.0) if len(feature.patches) > 1 else chunk.roots
-                moments = _round_moments if feature.curved[i] else _plane_moments
-                half, slope, bend = moments(walked, chunk.samples, i, root)
-                outer = feature.by_unknowns(patch_outer(walked, i))
-                turned = np.swapaxes(outer, 1, 2)
-                total += half
-                gradient += (turned @ slope[..., None])[..., 0]
-                square += turned @ (bend @ outer)
-            cost[chunk.panels] = total
-            normal.gradient[chunk.panels, :count] += gradient
-            normal.diagonal[chunk.panels, :count, :count] += square
+            residual, rows, mine = chunk.linear()
+            panels, count = chunk.panels, chunk.outer.shape[3]
+            slope = mine @ residual[:, None, :, None]
+            bend = mine @ np.swapaxes(rows, 1, 2)[:, None]
+            outer = chunk.outer.reshape(len(panels), -1, count)
+            moved = (bend @ chunk.outer).reshape(outer.shape)
+            turned = np.swapaxes(outer, 1, 2)
+            normal.gradient[panels, :count] += (turned @ slope.reshape(len(panels), -1, 1))[..., 0]
+            normal.diagonal[panels, :count, :count] += turned @ moved
+            cost[panels] = 0.5 * np.einsum("pm,pm->p", residual, residual)
         return cost
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
         rows = []
         for chunk in self._chunks(state):
-            walked, feature = chunk.walked, chunk.walked.feature
-            patch = chunk.assign()
-            residual, jacobian = np.zeros(patch.shape), np.zeros((*patch.shape, state.layout.size))
-            for i in range(len(feature.patches)):
-                distance, inner = patch_distance_inner(walked, chunk.samples, i)
-                mine = patch == i
-                residual = np.where(mine, distance * chunk.roots, residual)
-                own = (inner @ feature.by_unknowns(patch_outer(walked, i))) * chunk.roots[..., None]
-                jacobian[..., : own.shape[-1]] = np.where(mine[..., None], own, jacobian[..., : own.shape[-1]])
-            rows.append(Rows(residual, (chunk.panels,), (jacobian,)))
+            residual, _, mine = chunk.linear()
+            panels, count = chunk.panels, chunk.outer.shape[3]
+            jacobian = np.zeros((*residual.shape, state.layout.size))
+            by_inner = np.swapaxes(mine.reshape(len(panels), -1, residual.shape[1]), 1, 2)
+            jacobian[..., :count] = by_inner @ chunk.outer.reshape(len(panels), -1, count)
+            rows.append(Rows(residual, (panels,), (jacobian,)))
         return rows
 
     def _chunks(self, state: State) -> Iterator[_Chunk]:
@@ -141,43 +139,11 @@ class Deviation:
         return self.samples[:, group.panels], self.roots[group.panels]
 
 
-def _round_moments(walked: Walk, x: Array, patch: int, root: Array) -> tuple[Array, Array, Array]:
-    """Half the squares (n,), gradient (n, 8) and J^T J (n, 8, 8) by the inner numbers of a cone or cylinder."""
-    distance, inner = patch_distance_inner(walked, x, patch)
-    distance *= root
-    inner *= root[..., None]
-    turned = np.swapaxes(inner, 1, 2)
-    return 0.5 * np.einsum("pm,pm->p", distance, distance), (turned @ distance[..., None])[..., 0], turned @ inner
-
-
-def _plane_moments(walked: Walk, x: Array, patch: int, root: Array) -> tuple[Array, Array, Array]:
-    """The same for a plane, whose rows -(x cross n), -n are linear in (x, 1): four sums of samples make its moments."""
-    p, n = walked.carriers.p[:, patch], walked.carriers.n[:, patch]
-    distance = root * plane_distance(x, p, n)
-    lifted = np.empty((*root.shape, 4))
-    for axis in range(3):
-        np.multiply(x[axis], root, out=lifted[..., axis])
-    lifted[..., 3] = root
-    turned = np.swapaxes(lifted, 1, 2)
-    rows = np.zeros((len(p), INNER, 4))
-    # n cross x, written as a matrix on x.
-    rows[:, 0, 1], rows[:, 0, 2] = -n[:, 2], n[:, 1]
-    rows[:, 1, 0], rows[:, 1, 2] = n[:, 2], -n[:, 0]
-    rows[:, 2, 0], rows[:, 2, 1] = -n[:, 1], n[:, 0]
-    rows[:, 3:6, 3] = -n
-    slope = (rows @ (turned @ distance[..., None]))[..., 0]
-    return 0.5 * np.einsum("pm,pm->p", distance, distance), slope, rows @ (turned @ lifted) @ np.swapaxes(rows, 1, 2)
-
-
 def _part(walked: Walk, part: slice) -> Walk:
     """The same walk for some of its panels."""
     if len(walked.values) <= _CHUNK:
         return walked
 
-    def cut(rulings: Rulings) -> Rulings:
-        twist = None if rulings.twist is None else rulings.twist[part]
-        return Rulings(rulings.p[part], rulings.b[part], rulings.t[part], rulings.n[part], twist)
-
     w = walked
     dimensions = tuple(one.take(part) for one in w.dimensions)
-    return Walk(w.feature, w.values[part], dimensions, cut(w.anchor), cut(w.edges), cut(w.carriers))
+    return Walk(w.feature, w.values[part], dimensions, w.anchor.of(part), w.edges.of(part), w.carriers.of(part))

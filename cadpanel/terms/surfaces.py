@@ -9,10 +9,10 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
-from cadpanel.features.distance import middle, patch_outer, round_numbers
+from cadpanel.features.distance import middle, patch_outers, skin_numbers
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
-from cadpanel.geometry.cone import cone_distance, cone_distance_inner, plane_distance, plane_inner
+from cadpanel.geometry.cone import Skins
 from cadpanel.geometry.vectors import dot
 
 
@@ -21,78 +21,56 @@ class Surfaces:
     """Patches of all panels, K at most, each in its panel's frame.
 
     Attributes:
-        p, t, n: (panels, K, 3) the rulings that the patches are measured at.
-        radius, half_angle: (panels, K), 0 for planes.
+        numbers: (panels, K, 11) the patches, see `features.distance.skin_numbers`.
         curved: (panels, K) whether it is a cone or cylinder.
         outer: (panels, K, 8, size) how their inner numbers follow the unknowns, or None without derivatives.
         count: (panels,) number of patches.
-        sweep: (panels, K), 0 for planes.
-        ruling_p, ruling_b, ruling_t, ruling_n: (panels, K + 1, 3) the bounding rulings; of a polygon its plane, once.
+        ruling_p, ruling_b: (panels, K + 1, 3) the bounding rulings; of a polygon its plane, once.
         middle: (panels,) the patch on which the panel has turned half of its way.
         middle_p, middle_b: (panels, 3) the ruling there.
     """
 
-    p: Array
-    t: Array
-    n: Array
-    radius: Array
-    half_angle: Array
-    sweep: Array
+    numbers: Array
     curved: BoolArray
     outer: Array | None
     count: IntArray
     middle: IntArray
     ruling_p: Array
     ruling_b: Array
-    ruling_t: Array
-    ruling_n: Array
     middle_p: Array
     middle_b: Array
 
     def assign(self, x: Array, panel: IntArray) -> IntArray:
         """(g, q) the patch of each point x (g, q, 3) in the frame of its panel (g,); see `features.distance.assign`."""
-
-        def past(p: Array, b: Array) -> BoolArray:
-            return np.asarray(dot(x - p[:, None], b[:, None]) > 0.0)
-
-        right = past(self.middle_p[panel], self.middle_b[panel])
+        p, b = self.ruling_p[panel], self.ruling_b[panel]
+        beyond = x @ np.swapaxes(b, 1, 2) > dot(p, b)[:, None]
+        right = dot(x - self.middle_p[panel][:, None], self.middle_b[panel][:, None]) > 0.0
         middle, count = self.middle[panel, None], self.count[panel, None]
-        beyond = [past(self.ruling_p[panel, i], self.ruling_b[panel, i]) for i in range(self.p.shape[1])]
         patch = np.broadcast_to(middle, right.shape).copy()
         passed = right
-        for i in range(1, self.p.shape[1]):
+        for i in range(1, self.curved.shape[1]):
             asked = (i > middle) & (i < count)
-            passed = np.where(asked, passed & beyond[i], passed)
+            passed = np.where(asked, passed & beyond[..., i], passed)
             patch += asked & passed
         passed = ~right
-        for i in range(self.p.shape[1] - 1, 0, -1):
+        for i in range(self.curved.shape[1] - 1, 0, -1):
             asked = i <= middle
-            passed = np.where(asked, passed & ~beyond[i], passed)
+            passed = np.where(asked, passed & ~beyond[..., i], passed)
             patch -= asked & passed
         return patch
 
     def distance(self, x: Array, panel: IntArray, patch: IntArray) -> Array:
         """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,)."""
-        points, cone, curved = self._under(x, panel, patch)
-        distance = np.where(curved, cone_distance(points, *cone), plane_distance(points, cone[0], cone[2]))
-        return distance.reshape(patch.shape)
+        return self._under(panel, patch).distance(np.moveaxis(x, 2, 0))
 
     def distance_inner(self, x: Array, panel: IntArray, patch: IntArray) -> tuple[Array, Array]:
         """The same, and its inner derivative (g, q, 8)."""
-        points, cone, curved = self._under(x, panel, patch)
-        round_, inner = cone_distance_inner(points, *cone)
-        distance = np.where(curved, round_, plane_distance(points, cone[0], cone[2]))
-        inner = np.where(curved[..., None], inner, plane_inner(points, cone[2]))
-        return distance.reshape(patch.shape), inner.reshape(*patch.shape, -1)
+        distance, inner = self._under(panel, patch).distance_inner(np.moveaxis(x, 2, 0))
+        return distance, np.moveaxis(inner, 0, 2)
 
-    def _under(
-        self, x: Array, panel: IntArray, patch: IntArray
-    ) -> tuple[Array, tuple[Array, Array, Array, Array, Array], BoolArray]:
-        """All points (3, g q, 1), the numbers p, t, n, radius and half angle of their patches, and which are curved."""
-        place = (panel[:, None] * self.p.shape[1] + patch).reshape(-1)
-        p, t, n = (axis.reshape(-1, 3)[place] for axis in (self.p, self.t, self.n))
-        radius, half_angle, curved = (one.reshape(-1)[place] for one in (self.radius, self.half_angle, self.curved))
-        return x.reshape(-1, 1, 3).transpose(2, 0, 1), (p, t, n, radius, half_angle), curved[:, None]
+    def _under(self, panel: IntArray, patch: IntArray) -> Skins:
+        own = panel[:, None]
+        return Skins.of_rows(np.moveaxis(self.numbers[own, patch], 2, 0), self.curved[own, patch])
 
 
 def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:
@@ -108,29 +86,17 @@ def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:
 
 
 def _surfaces(walked: Walk) -> Surfaces:
-    feature, carriers = walked.feature, walked.carriers
-    panels, patches = carriers.p.shape[:2]
-    radius, half_angle, sweep = round_numbers(walked)
+    feature, (panels, patches) = walked.feature, walked.carriers.frames.shape[:2]
     begin = middle(walked)
-    outer = None
-    if carriers.twist is not None:
-        outer = np.stack([feature.by_unknowns(patch_outer(walked, i)) for i in range(patches)], axis=1)
     rulings = walked.edges if walked.edges.p.shape[1] else walked.anchor
     return Surfaces(
-        p=carriers.p,
-        t=carriers.t,
-        n=carriers.n,
-        radius=radius,
-        half_angle=half_angle,
-        sweep=sweep,
+        numbers=skin_numbers(walked),
         curved=np.broadcast_to(np.array(feature.curved), (panels, patches)),
-        outer=outer,
+        outer=None if walked.carriers.twist is None else feature.by_unknowns(patch_outers(walked)),
         count=np.full(panels, patches),
         middle=begin.patch,
         ruling_p=rulings.p,
         ruling_b=rulings.b,
-        ruling_t=rulings.t,
-        ruling_n=rulings.n,
         middle_p=begin.p,
         middle_b=begin.b,
     )

@@ -101,11 +101,11 @@ def test_neighbouring_patches_share_their_tangent_plane_along_the_whole_ruling(n
 
 def test_a_ruling_that_leaves_its_tangent_plane_by_a_little_is_found():
     walked = FEATURES["plane-cone-plane"].walk(random_values(FEATURES["plane-cone-plane"], 1), derivatives=False)
-    e = walked.edges
-    tilted = e.t + 1e-9 * e.n
-    assert tangent_faults(walked, Rulings(e.p, e.b, tilted, e.n, None))[0] > ROUNDING
-    turned = e.n + 1e-9 * e.b
-    assert tangent_faults(walked, Rulings(e.p, e.b, e.t, turned, None))[1] > ROUNDING
+    tilted, turned = walked.edges.frames.copy(), walked.edges.frames.copy()
+    tilted[:, :, 1] += 1e-9 * walked.edges.n
+    assert tangent_faults(walked, Rulings(tilted, None))[0] > ROUNDING
+    turned[:, :, 2] += 1e-9 * walked.edges.b
+    assert tangent_faults(walked, Rulings(turned, None))[1] > ROUNDING
 
 
 @every_chain

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.features.carrying import carry
+from cadpanel.features.carrying import carry, moves_over
 from cadpanel.features.catalogue import feature
 from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.feature import Feature
@@ -217,20 +216,19 @@ def one_cone_told_twice(stretch=1.0):
     values[0, split.cut_numbers[0]], values[0, split.cut_numbers[1]] = (-0.5, 0.02, -0.1), (0.5, -0.05, 0.15)
     walked = split.walk(values, derivatives=False)
     # The anchor of the whole cone lies further on, by half of the second sweep.
-    start = walked.anchor
-    one: Any = SimpleNamespace(p=start.p[:, 0], b=start.b[:, 0], t=start.t[:, 0], n=start.n[:, 0])
-    middle, _ = carry("cone", one, np.array([[radius, half_angle, 0.5 * sweeps[1]]]), 1.0)
-    into = np.stack([middle.b[0], middle.t[0], middle.n[0]], axis=1)
+    over = moves_over("cone", np.array([radius, half_angle, 0.5 * sweeps[1]]), np.array(1.0), derivatives=False)
+    middle = carry(over.frames, walked.anchor.frames[0, 0])
+    into = middle[:3].T
     numbers = np.zeros((1, len(whole.numbers)))
     numbers[0, whole.patch_slice(0)] = radius * stretch, half_angle, sum(sweeps)
     m, s = (one[0] for one in cut_planes(walked))
     for end in (0, 1):
         across, along, out = m[end] @ into
-        numbers[0, whole.cut_numbers[end]] = (s[end] - m[end] @ middle.p[0]) / along, across / along, out / along
+        numbers[0, whole.cut_numbers[end]] = (s[end] - m[end] @ middle[3]) / along, across / along, out / along
     place, length = problem.place, problem.place.length
     place = replace(
         place,
-        origins=np.array([place.origins[0], place.origins[0] + length * place.axes[0] @ middle.p[0]]),
+        origins=np.array([place.origins[0], place.origins[0] + length * place.axes[0] @ middle[3]]),
         axes=np.array([place.axes[0], place.axes[0] @ into]),
     )
     unknowns = np.zeros((2, problem.layout.size))

@@ -12,7 +12,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
-from cadpanel.features.distance import patch_outer
+from cadpanel.features.distance import patch_outers
 from cadpanel.features.layout import Group
 from cadpanel.features.patch_checks import greatest_radius
 from cadpanel.features.rulings import PanelFeature, Points, Walk
@@ -101,5 +101,5 @@ def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> t
     moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
     slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
     inner = np.stack([np.ones_like(height), height * (1.0 + widening**2)], axis=-1)
-    slope += inner @ patch_outer(walked, patch)[:, 6:]
+    slope += inner @ patch_outers(walked)[:, patch][:, 6:]
     return radii, sign[..., None] * slope

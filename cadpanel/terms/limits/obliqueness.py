@@ -13,7 +13,7 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
-from cadpanel.features.distance import patch_outer
+from cadpanel.features.distance import patch_outers
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.chain_checks import LARGEST_ECCENTRICITY, SMALLEST_CUT_COSINE
@@ -107,7 +107,7 @@ class ObliquenessTerm(LackTerm):
         angle = walked.dimensions[patch].values[:, 1, None]
         cosine, sine, widening = np.cos(angle), np.sin(angle), np.tan(angle)
         axis = cosine * t - sine * n
-        outer = None if rates is None else patch_outer(walked, patch)
+        outer = None if rates is None else patch_outers(walked)[:, patch]
         rise, risen = _rise(axis[:, None], None if outer is None else outer[:, None, :6], planes, rates)
         root = np.sqrt(LARGEST_ECCENTRICITY**2 + widening**2)
         values = np.concatenate([root * rise - widening, root * rise + widening], axis=1) + self._sine

@@ -43,7 +43,7 @@ class Work:
         roots: (vectors,) roots across u, and what (.., along u) adds to them: residuals of a change e of u are
             roots e + along (u . e) u.
         along: see `roots`.
-        residuals: for each batch, for each of its blocks (groups, vectors d, size) the residuals' derivatives.
+        residuals: for each bundle, for each of its blocks (groups, components, size) the residuals' derivatives.
     """
 
     weight: Array
@@ -166,39 +166,47 @@ class Barriers:
         own[held.one_sided & (at.values <= 0.0)] = 0.0
         square = np.where(held.one_sided, 0.0, at.squares / tau**2)
         across = np.where(held.one_sided, 1.0 / stiffness + own, w + own + damping[held.first] * self._ties * tau**2)
-        roots = np.sqrt(across)
-        along = (np.sqrt(across + square / stiffness) - roots) / np.maximum(square, _NEARLY_NONE)
+        roots, longest = np.sqrt(across), np.sqrt(across + square / stiffness)
+        along = (longest - roots) / np.maximum(square, _NEARLY_NONE)
         u = np.where(held.one_sided[held.of], 1.0, at.rows / tau[held.of])
-        force = np.where(held.one_sided, pull + own * at.values / tau, pull + own) / tau
-        residuals = self._add(normal, jacobians, u, roots / tau, along / tau, force[held.of] * u)
+        # Along u residuals count by their longest root: this one's product with the rows is the gradient.
+        force = np.where(held.one_sided, pull + own * at.values / tau, pull + own) / longest
+        residuals = self._rows(jacobians, u, roots / tau, along / tau)
+        self._add(normal, residuals, force[held.of] * u)
         return Work(w, stiffness, shift, u, roots, along, residuals)
 
-    def _add(
-        self, normal: Normal, jacobians: Jacobians, u: Array, across: Array, along: Array, force: Array
-    ) -> tuple[tuple[Array, ...], ...]:
-        """Add batch by batch; the residuals' derivatives."""
+    def _rows(self, jacobians: Jacobians, u: Array, across: Array, along: Array) -> tuple[tuple[Array, ...], ...]:
+        """For each bundle, for each of its blocks (groups, components, size) the residuals' derivatives."""
         held, found = self.held, []
-        for i, (groups, q, d) in enumerate(held.shapes):
-            vectors, rows = held.vectors[i], held.rows[i]
-            by_vector = across[vectors].reshape(groups, q, 1, 1)
-            mine, straight = [], not held.held[i].hold.one_sided
-            if straight:
-                radial = u[rows].reshape(groups, q, 1, d)
-                out = np.swapaxes(along[vectors].reshape(groups, q, 1, 1) * radial, 2, 3)
-            pulls = force[rows].reshape(groups, 1, q * d)
-            for scatter, jacobian in zip(held.blocks[i], jacobians[i], strict=True):
-                row = by_vector * jacobian
+        for bundle in held.bundles:
+            size = jacobians[bundle.batches[0]][0].shape[-1]
+            whole = tuple(np.empty((*bundle.rows.shape, size)) for _ in bundle.blocks)
+            for i, columns in zip(bundle.batches, bundle.columns, strict=True):
+                groups, q, d = held.shapes[i]
+                vectors = held.vectors[i]
+                by_vector = across[vectors].reshape(groups, q, 1, 1)
+                straight = not held.held[i].hold.one_sided
                 if straight:
-                    row += out * (radial @ jacobian)
-                row = row.reshape(groups, q * d, jacobian.shape[-1])
-                mine.append(row)
-                scatter.add(normal.gradient, (pulls @ jacobian.reshape(row.shape))[:, 0])
-                scatter.add(normal.diagonal, np.swapaxes(row, 1, 2) @ row)
-            pair = held.pairs[i]
-            if pair is not None:
-                pair.add(normal.coupling, np.swapaxes(mine[0], 1, 2) @ mine[1])
-            found.append(tuple(mine))
+                    radial = u[held.rows[i]].reshape(groups, q, 1, d)
+                    out = np.swapaxes(along[vectors].reshape(groups, q, 1, 1) * radial, 2, 3)
+                for into, jacobian in zip(whole, jacobians[i], strict=True):
+                    row = by_vector * jacobian
+                    if straight:
+                        row += out * (radial @ jacobian)
+                    into[:, columns] = row.reshape(len(into), -1, size)
+            found.append(whole)
         return tuple(found)
+
+    def _add(self, normal: Normal, residuals: tuple[tuple[Array, ...], ...], off: Array) -> None:
+        """Add J^T r and J^T J of residuals that are `off` (rows,)."""
+        for bundle, rows in zip(self.held.bundles, residuals, strict=True):
+            turned = [np.swapaxes(row, 1, 2) for row in rows]
+            here = off[bundle.rows][..., None]
+            for scatter, row, back in zip(bundle.blocks, rows, turned, strict=True):
+                scatter.add(normal.gradient, (back @ here)[..., 0])
+                scatter.add(normal.diagonal, back @ row)
+            if bundle.pair is not None:
+                bundle.pair.add(normal.coupling, turned[0] @ rows[1])
 
     def bend(self, gradient: Array, work: Work, off: Array) -> None:
         """Add the gradient (blocks, size) of vectors that turned out to be `off` (rows,) at a trial.
@@ -208,10 +216,10 @@ class Barriers:
         held = self.held
         e = off / self.tau[held.of]
         residual = work.roots[held.of] * e + (work.along * held.total(work.u * e))[held.of] * work.u
-        for i, (groups, q, d) in enumerate(held.shapes):
-            flat = residual[held.rows[i]].reshape(groups, 1, q * d)
-            for scatter, row in zip(held.blocks[i], work.residuals[i], strict=True):
-                scatter.add(gradient, (flat @ row)[:, 0])
+        for bundle, rows in zip(held.bundles, work.residuals, strict=True):
+            here = residual[bundle.rows][:, None]
+            for scatter, row in zip(bundle.blocks, rows, strict=True):
+                scatter.add(gradient, (here @ row)[:, 0])
 
     def moved(self, jacobians: Jacobians, step: Array) -> Array:
         """(rows,) how far the vectors move in a step (blocks, size), to first order."""

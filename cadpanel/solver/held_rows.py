@@ -32,6 +32,25 @@ class Rowed(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Bundle:
+    """Batches whose groups see the same blocks, one by one: to a matrix of blocks they are one batch.
+
+    Attributes:
+        batches: which.
+        columns: for each where its components stand in a group of all of them.
+        rows: (groups, components) where these stand in the row.
+        blocks: how groups add to blocks.
+        pair: how they add to pairs of coupled blocks; None where a group sees one block.
+    """
+
+    batches: tuple[int, ...]
+    columns: tuple[slice, ...]
+    rows: IntArray
+    blocks: tuple[Scatter, ...]
+    pair: Scatter | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class HeldRows:
     """Where the vectors of each batch stand in the row.
 
@@ -43,7 +62,7 @@ class HeldRows:
         of: (rows,) whose component it is.
         first, second: (vectors,) the blocks that each sees, the same one twice where it sees one.
         gives_way, one_sided: (vectors,) see `Hold`.
-        blocks, pairs: for each batch how it adds to blocks, and to pairs of coupled ones.
+        bundles: batches that are added to a matrix together.
     """
 
     held: tuple[HeldVectors, ...]
@@ -56,8 +75,7 @@ class HeldRows:
     second: IntArray
     gives_way: BoolArray
     one_sided: BoolArray
-    blocks: tuple[tuple[Scatter, ...], ...]
-    pairs: tuple[Scatter | None, ...]
+    bundles: tuple[Bundle, ...]
 
     @staticmethod
     def of_batches(held: Sequence[HeldVectors], vectors: Sequence[Array], blocks: int, pairs: int) -> HeldRows:
@@ -77,19 +95,19 @@ class HeldRows:
             [np.repeat(one.blocks[side], shape[1]) for one, shape in zip(held, shapes, strict=True)] for side in (0, -1)
         )
         none = np.zeros(0, dtype=np.intp)
+        rows = _slices([count * d for count, (_, _, d) in zip(counts, shapes, strict=True)])
         return HeldRows(
             held=tuple(held),
             shapes=tuple(shapes),
             vectors=_slices(counts),
-            rows=_slices([count * d for count, (_, _, d) in zip(counts, shapes, strict=True)]),
+            rows=rows,
             starts=starts,
             of=np.repeat(np.arange(len(starts)), sizes),
             first=np.concatenate([none, *first]),
             second=np.concatenate([none, *second]),
             gives_way=np.repeat(np.array([one.hold.gives_way for one in held], dtype=bool), counts),
             one_sided=np.repeat(np.array([one.hold.one_sided for one in held], dtype=bool), counts),
-            blocks=tuple(tuple(Scatter(index, blocks) for index in one.blocks) for one in held),
-            pairs=tuple(None if one.pair is None else Scatter(one.pair, pairs) for one in held),
+            bundles=_bundles(held, rows, blocks, pairs),
         )
 
     def told(self, parts: Sequence[Array]) -> Array:
@@ -114,6 +132,40 @@ class HeldRows:
     def total(self, rows: Array) -> Array:
         """(vectors,) sums over the components of each."""
         return np.asarray(np.add.reduceat(rows, self.starts)) if len(rows) else np.zeros(0)
+
+
+def _bundles(held: Sequence[HeldVectors], rows: Sequence[slice], blocks: int, pairs: int) -> tuple[Bundle, ...]:
+    alike: dict[tuple[bytes, ...], list[int]] = {}
+    seen: dict[tuple[bytes, ...], list[IntArray]] = {}
+    for batch, one in enumerate(held):
+        sees = [*one.blocks] if one.pair is None else [*one.blocks, one.pair]
+        run = _run(sees)
+        key = (b"" if one.pair is None else b"pair", *(index[::run].tobytes() for index in sees))
+        alike.setdefault(key, []).append(batch)
+        seen[key] = [index[::run] for index in sees]
+    found = []
+    for key, batches in alike.items():
+        coupled = key[0] == b"pair"
+        sees = seen[key]
+        own = [np.arange(rows[i].start, rows[i].stop).reshape(len(sees[0]), -1) for i in batches]
+        found.append(
+            Bundle(
+                batches=tuple(batches),
+                columns=_slices([part.shape[1] for part in own]),
+                rows=np.concatenate(own, axis=1),
+                blocks=tuple(Scatter(index, blocks) for index in (sees[:-1] if coupled else sees)),
+                pair=Scatter(sees[-1], pairs) if coupled else None,
+            )
+        )
+    return tuple(found)
+
+
+def _run(sees: Sequence[IntArray]) -> int:
+    """How many groups after each other, all along, see the same: they may count as one group."""
+    first = sees[0]
+    run = int(np.argmax(np.append(first, -1) != first[0])) if len(first) else 1
+    alike = len(first) % run == 0 and all(bool((index.reshape(-1, run) == index[::run, None]).all()) for index in sees)
+    return run if alike else 1
 
 
 def _slices(counts: Sequence[int]) -> tuple[slice, ...]:

@@ -176,3 +176,28 @@ def test_distances_that_may_give_way_begin_wider_and_multipliers_halfway():
     assert barrier.tau.tolist() == barrier.goal.tolist()
     assert barrier.weight.tolist() == [0.5 * MOST] * 8
     assert barrier.multipliers[1] == pytest.approx(np.full((2, 2), 0.5 * MOST / 9.0))
+
+
+def test_batches_of_the_same_blocks_add_what_each_adds_by_itself():
+    """Two of pairs, and two of single blocks one of which has its vectors in groups of their own."""
+    random, first, each = np.random.default_rng(11), np.arange(2), np.arange(3)
+    at = random.normal(size=(3, 3))
+
+    def batch(groups: int, vectors: int, *where: np.ndarray, pair: np.ndarray | None = None) -> HeldBatch:
+        hold = Hold(random.uniform(0.5, 2.0, (groups, vectors)), weight=0.2)
+        return HeldBatch(hold, random.normal(size=(groups, vectors, 3)), where, pair)
+
+    batches = [batch(2, 2, first, first + 1, pair=first), batch(3, 2, each), batch(2, 1, first, first + 1, pair=first)]
+    batches.append(batch(6, 1, np.repeat(each, 2)))
+
+    def added(own: list[HeldBatch]) -> list[np.ndarray]:
+        vectors = [one.vectors(at) for one in own]
+        held, normal, gradient = HeldRows.of_batches(own, vectors, 3, 2), Normal.zero(3, 3, 2), np.zeros((3, 3))
+        row = held.measured(vectors)
+        work = Barriers(held, most=MOST, ease=1.0).add_to(normal, row, [one.jacobians() for one in own], MU, np.ones(3))
+        Barriers(held, most=MOST, ease=1.0).bend(gradient, work, row.rows)
+        return [normal.gradient, normal.diagonal, normal.coupling, gradient]
+
+    assert len(HeldRows.of_batches(batches, [one.vectors(at) for one in batches], 3, 2).bundles) == 2
+    for together, *alone in zip(added(batches), *(added([one]) for one in batches), strict=True):
+        assert together == pytest.approx(sum(alone), rel=1e-12)

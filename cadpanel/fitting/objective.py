@@ -30,8 +30,8 @@ class Objective:
         """`coupled` where some term sees both panels of a seam."""
         self.problem = of
         self.terms = tuple(terms)
-        pairs = of.pairs if coupled else np.empty((0, 2), dtype=np.intp)
-        self.pattern = BlockPattern(of.panels, of.layout.size, pairs)
+        alone = np.empty((0, 2), dtype=np.intp)
+        self.pattern = of.pattern if coupled else BlockPattern(of.panels, of.layout.size, alone)
         self.bounds: Bounds | None = Bounds(*of.bounds)
         self._idle = None if of.layout.used.all() else ~of.layout.used
 

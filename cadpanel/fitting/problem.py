@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -77,6 +78,11 @@ class Problem:
         for batch in self.seams:
             found[batch.index] = batch.pair
         return found
+
+    @cached_property
+    def pattern(self) -> BlockPattern:
+        """Which panels are coupled, as the solvers see it."""
+        return BlockPattern(self.panels, self.layout.size, self.pairs)
 
     @property
     def panels(self) -> int:

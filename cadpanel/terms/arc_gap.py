@@ -31,14 +31,14 @@ _LEAST_SINE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class _Side:
-    """The arc points of one panel of every seam, and what of the other panel they are held to.
+class _Points:
+    """The arc points of the first panel of every seam, then of the second one, and what of the other they are held to.
 
     Attributes:
-        own, other: (seams,) the panel that the points belong to, and the other one.
-        places: (seams, q) the points among the panel's arc points.
-        patch: (seams, q) the other panel's patches that they meet.
-        end: (seams,) the other panel's end.
+        own, other: (2 seams,) the panel that the points belong to, and the other one.
+        places: (2 seams, q) the points among the panel's arc points.
+        patch: (2 seams, q) the other panel's patches that they meet.
+        end: (2 seams,) the other panel's end.
         carrying: from the points' panel to the other one.
     """
 
@@ -57,35 +57,32 @@ class ArcGap(HeldTerm):
         """Hold the arcs of a batch of curved edges that are alike within `tolerance`, in the solver's length."""
         self.seams, self.place = seams, place
         self.blocks, self.pair, self.panels = seams.blocks, seams.pair, len(place.origins)
-        self._sides = tuple(self._side(layout, side) for side in (0, 1))
-        points = sum(side.places.shape[1] for side in self._sides)
+        own, other = (np.concatenate([seams.panels[:, side] for side in sides]) for sides in ((0, 1), (1, 0)))
+        self._points = _Points(
+            own=own,
+            other=other,
+            places=np.concatenate([arc_places(layout, seams, side) for side in (0, 1)]),
+            patch=np.concatenate([self._patches(side) for side in (0, 1)]),
+            end=np.concatenate([seams.edges[:, 1 - side] for side in (0, 1)]),
+            carrying=place.carrying(own, other),
+        )
         self._metric: Array | None = None
+        points = 2 * self._points.places.shape[1]
         self.hold = Hold(np.full((len(seams.panels), points), tolerance), weight=1.0, gives_way=True)
 
-    def _side(self, layout: Layout, side: int) -> _Side:
+    def _patches(self, side: int) -> IntArray:
         seams = self.seams
         patch = np.tile(arc_patches(seams.curved[side]), (len(seams.panels), 1))
-        mirrored = len(seams.curved[side]) - 1 - patch
-        return _Side(
-            own=seams.panels[:, side],
-            other=seams.panels[:, 1 - side],
-            places=arc_places(layout, seams, side),
-            patch=np.where(seams.reversed[:, None], mirrored, patch),
-            end=seams.edges[:, 1 - side],
-            carrying=self.place.carrying(seams.panels[:, side], seams.panels[:, 1 - side]),
-        )
+        return np.where(seams.reversed[:, None], len(seams.curved[side]) - 1 - patch, patch)
 
     def vectors(self, state: State) -> Array:
         """(seams, points, 2) distances from the other panel's cone and cut plane, or from where these two meet."""
-        return self._told(np.concatenate([self._distances(state, side)[0] for side in self._sides], axis=1))
+        return self._told(np.concatenate(_halves(self._distances(state)[0]), axis=1))
 
     def straighten(self, state: State) -> None:
         """From now on measure from where cone and cut plane meet, by the angles that they have in this state."""
-        cosines = []
-        for side in self._sides:
-            _, _, inner = self._distances(state, side)
-            cosines.append(dot(-inner[..., 3:6], state.cuts.m[side.other, side.end][:, None]))
-        cosine = np.concatenate(cosines, axis=1)
+        of, (_, _, inner) = self._points, self._distances(state)
+        cosine = np.concatenate(_halves(dot(-inner[..., 3:6], state.cuts.m[of.other, of.end][:, None])), axis=1)
         sine = np.sqrt(np.maximum(1.0 - cosine**2, _LEAST_SINE**2))
         self._metric = np.zeros((*cosine.shape, 2, 2))
         self._metric[..., 0, 0] = 1.0
@@ -93,10 +90,10 @@ class ArcGap(HeldTerm):
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""
-        first, second = (self._linearized(state, side) for side in self._sides)
-        parts = ((first[0], second[0]), (first[1], second[2]), (first[2], second[1]))
-        distances, to_first, to_second = (np.concatenate(part, axis=1) for part in parts)
-        return self._told(distances), (self._told(to_first), self._told(to_second))
+        distances, by_own, by_other = (_halves(part) for part in self._linearized(state))
+        told = (distances, (by_own[0], by_other[1]), (by_other[0], by_own[1]))
+        vectors, to_first, to_second = (self._told(np.concatenate(parts, axis=1)) for parts in told)
+        return vectors, (to_first, to_second)
 
     def _told(self, distances: Array) -> Array:
         """Distances (seams, q, 2), or their derivatives (seams, q, 2, unknowns), as they are measured."""
@@ -106,25 +103,31 @@ class ArcGap(HeldTerm):
             return self._metric @ distances
         return (self._metric @ distances[..., None])[..., 0]
 
-    def _distances(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
-        """Distances (seams, q, 2), the points (seams, q, 3) in the other panels' frames, and the cones' inner rates."""
-        own = state.arcs.position[side.own[:, None], side.places]
-        points = side.carrying.points(own)
-        from_cone, inner = state.surfaces.distance_inner(points, side.other, side.patch)
-        m, s = state.cuts.m[side.other, side.end], state.cuts.s[side.other, side.end]
+    def _distances(self, state: State) -> tuple[Array, Array, Array]:
+        """Distances (2 seams, q, 2), the points (2 seams, q, 3) in the other panels' frames, the cones' inner rates."""
+        of = self._points
+        points = of.carrying.points(state.arcs.position[of.own[:, None], of.places])
+        from_cone, inner = state.surfaces.distance_inner(points, of.other, of.patch)
+        m, s = state.cuts.m[of.other, of.end], state.cuts.s[of.other, of.end]
         from_cut = dot(points, m[:, None]) - s[:, None]
         return np.stack([from_cone, from_cut], axis=-1), points, inner
 
-    def _linearized(self, state: State, side: _Side) -> tuple[Array, Array, Array]:
-        """Distances, and their derivatives (seams, q, 2, size) by the points' panels and by the other panels."""
-        distances, points, inner = self._distances(state, side)
+    def _linearized(self, state: State) -> tuple[Array, Array, Array]:
+        """Distances, and their derivatives (2 seams, q, 2, size) by the points' panels and by the other panels."""
+        of, (distances, points, inner) = self._points, self._distances(state)
         outer, dm, ds = state.surfaces.outer, state.cuts.dm, state.cuts.ds
         if outer is None or dm is None or ds is None:
             raise ValueError("the state was walked without derivatives")
-        m = state.cuts.m[side.other, side.end]
+        m = state.cuts.m[of.other, of.end]
         # How the distances follow the point itself: the cone's normal, and the cut plane's.
         gradients = np.stack([-inner[..., 3:6], np.broadcast_to(m[:, None], points.shape)], axis=2)
-        moved = side.carrying.rates(slopes(state.arcs)[side.own[:, None], side.places])
-        by_cone = (inner[..., None, :] @ outer[side.other[:, None], side.patch])[..., 0, :]
-        by_cut = points @ dm[side.other, side.end] - ds[side.other, side.end][:, None]
+        moved = of.carrying.rates(slopes(state.arcs)[of.own[:, None], of.places])
+        by_cone = (inner[..., None, :] @ outer[of.other[:, None], of.patch])[..., 0, :]
+        by_cut = points @ dm[of.other, of.end] - ds[of.other, of.end][:, None]
         return distances, gradients @ moved, np.stack([by_cone, by_cut], axis=2)
+
+
+def _halves(values: Array) -> tuple[Array, Array]:
+    """What belongs to the first panels' points (seams, ...), and to the second ones', of (2 seams, ...)."""
+    seams = len(values) // 2
+    return values[:seams], values[seams:]

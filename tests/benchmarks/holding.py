@@ -32,6 +32,7 @@ from cadpanel.fitting.problem import Problem, pose
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.solver.ended import Limits
 from cadpanel.solver.interior_point import interior_point
+from cadpanel.terms.state import State
 from cadpanel.terms.term import HeldTerm
 from fixtures.arrays import reference
 from fixtures.grids import dome, grid
@@ -123,26 +124,30 @@ def random_lip(seed: int, panels: int) -> Lip:
 def scipy(
     panels: Annotated[list[int], typer.Option(help="Strips to solve.")],
     limit: Annotated[float, typer.Option(help="Seconds after which scipy is stopped.")] = 600.0,
+    times: Annotated[int, typer.Option(help="Runs of each, by turns, of which the quickest counts.")] = 1,
 ) -> None:
     """Time to the same limits and deviation: ours, SLSQP, and trf once somebody has told it the weights."""
     print(
-        f"{'panels':>6} {'ours, s':>8} {'RMS, mm':>8} {'SLSQP, s':>9} {'ratio':>6} {'reached':>22} {'trf, s':>7} "
-        f"{'ratio':>6}"
+        f"{'panels':>6} {'ours, s':>8} {'steps':>6} {'RMS, mm':>8} {'SLSQP, s':>9} {'ratio':>6} {'evaluations':>12} "
+        f"{'reached':>22} {'trf, s':>7} {'ratio':>6}"
     )
     for count in panels:
         lip, how = reference(long_lip(count)), FitSettings()
         problem, begin = pose(lip, [how.feature_for(4)] * count)
         local = fit_local(problem, lip, begin, how).unknowns
-        Concurrent().fit(problem, [local], how)  # modules are loaded once
-        began = time.process_time()
-        found = Concurrent().fit(problem, [local], how)
-        ours = time.process_time() - began
+        found = Concurrent().fit(problem, [local], how)  # modules are loaded once
         rms = _rms(problem, found.unknowns)
-        seconds, reached = _slsqp(problem, local, how, rms * AS_GOOD, limit)
+        ours, seconds, evaluations, reached = np.inf, np.inf, (0, 0), ""
+        for _ in range(times):
+            began = time.process_time()
+            Concurrent().fit(problem, [local], how)
+            ours = min(ours, time.process_time() - began)
+            once, evaluations, reached = _slsqp(problem, local, how, rms * AS_GOOD, limit)
+            seconds = min(seconds, once)
         told = _trf(problem, local, how, found.unknowns, limit)
         print(
-            f"{count:6d} {ours:8.2f} {rms:8.3f} {seconds:9.1f} {seconds / ours:6.0f} {reached:>22} {told:7.1f} "
-            f"{told / ours:6.0f}",
+            f"{count:6d} {ours:8.3f} {found.iterations:6d} {rms:8.3f} {seconds:9.2f} {seconds / ours:6.1f} "
+            f"{'{} + {}'.format(*evaluations):>12} {reached:>22} {told:7.2f} {told / ours:6.1f}",
             flush=True,
         )
 
@@ -180,32 +185,50 @@ def _held(problem: Problem, how: FitSettings, start: Array) -> list[HeldTerm]:
     return [*gap_terms(problem, gaps, problem.state(start)), *problem.limits(how, MARGIN)]
 
 
-def _slsqp(problem: Problem, start: Array, how: FitSettings, rms: float, limit: float) -> tuple[float, str]:
-    """Seconds until SLSQP holds everything at this RMS deviation, and what it had by then; dense, as scipy has it."""
+def _slsqp(
+    problem: Problem, start: Array, how: FitSettings, rms: float, limit: float
+) -> tuple[float, tuple[int, int], str]:
+    """Seconds until SLSQP holds everything at this RMS deviation, dense, as scipy has it.
+
+    Besides its evaluations without and with derivatives, and what it had by then. It is given the terms, the bounds and
+    the exact derivatives that ours has, and ends where it is as good, not by a tolerance of its own. Panels are walked
+    once for all that it asks at a place.
+    """
     held, shape = _held(problem, how, start), start.shape
     lower, upper = (np.clip(bound.reshape(-1), -1e3, 1e3) for bound in problem.bounds)
+    model = Objective(problem, [problem.deviation], coupled=True)
     began = time.process_time()
-    best = [np.inf, np.inf]
+    best, evaluations = [np.inf, np.inf], [0, 0]
+    last: dict[bool, tuple[bytes, State]] = {}
 
-    def check(x: Array) -> None:
-        state = problem.state(x.reshape(shape))
-        excess, now = max(term.hold.excess(term.vectors(state)) for term in held), _rms(problem, x.reshape(shape))
+    def state_at(x: Array, *, derivatives: bool) -> State:
+        for kind in (True, False) if not derivatives else (True,):
+            if kind in last and last[kind][0] == x.tobytes():
+                return last[kind][1]
+        evaluations[derivatives] += 1
+        last[derivatives] = (x.tobytes(), problem.state(x.reshape(shape), derivatives=derivatives))
+        return last[derivatives][1]
+
+    def cost(x: Array) -> float:
+        state = state_at(x, derivatives=False)
+        excess = max(term.hold.excess(term.vectors(state)) for term in held)
+        booked = problem.deviation.cost(state)
+        now = problem.rms(booked) * problem.place.length
         if max(excess, HOLDS) <= max(best[0], HOLDS):
             best[:] = [excess, now]
         if (excess <= HOLDS and now <= rms) or time.process_time() - began > limit:
             raise _DoneError
+        return float(booked.sum())
 
-    def cost(x: Array) -> tuple[float, Array]:
-        check(x)
-        booked, normal = Objective(problem, [problem.deviation], coupled=True).linearize(x.reshape(shape))
-        return float(booked.sum()), normal.gradient.reshape(-1)
+    def gradient(x: Array) -> Array:
+        return model.linearize_at(state_at(x, derivatives=True))[1].gradient.reshape(-1)
 
     def left(x: Array) -> Array:
-        state = problem.state(x.reshape(shape))
+        state = state_at(x, derivatives=False)
         return np.concatenate([_left(term, term.vectors(state)).reshape(-1) for term in held])
 
     def slope(x: Array) -> Array:
-        state = problem.state(x.reshape(shape), derivatives=True)
+        state = state_at(x, derivatives=True)
         return np.concatenate([_slope(term, *term.linear(state), shape) for term in held])
 
     constraints: Any = {"type": "ineq", "fun": left, "jac": slope}
@@ -213,13 +236,13 @@ def _slsqp(problem: Problem, start: Array, how: FitSettings, rms: float, limit: 
         minimize(
             cost,
             np.clip(start.reshape(-1), lower, upper),
-            jac=True,
+            jac=gradient,
             method="SLSQP",
             bounds=list(zip(lower, upper, strict=True)),
             constraints=constraints,
             options={"maxiter": 100_000, "ftol": 1e-16},
         )
-    return time.process_time() - began, f"{best[1]:.3f} mm at {best[0]:.3f} x"
+    return time.process_time() - began, (evaluations[0], evaluations[1]), f"{best[1]:.3f} mm at {best[0]:.3f} x"
 
 
 def _left(term: HeldTerm, vectors: Array) -> Array:

@@ -52,6 +52,23 @@ def cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
     return dm, ds
 
 
+@once
+def unit_cut_planes(walked: Walk) -> tuple[Array, Array]:
+    """`cut_planes` with m of unit length."""
+    m, s = cut_planes(walked)
+    size = np.sqrt(dot(m, m))
+    return m / size[..., None], s / size
+
+
+@once
+def unit_cut_plane_rates(walked: Walk) -> tuple[Array, Array]:
+    """How `unit_cut_planes` follow the numbers: dm (panels, ends, 3, N) and ds (panels, ends, N)."""
+    (m, _), (unit, place), (dm, ds) = cut_planes(walked), unit_cut_planes(walked), cut_plane_rates(walked)
+    size = np.sqrt(dot(m, m))[..., None]
+    growth = (unit[..., None, :] @ dm)[..., 0, :]
+    return (dm - unit[..., None] * growth[..., None, :]) / size[..., None], (ds - place[..., None] * growth) / size
+
+
 def carried(feature: PanelFeature) -> bool:
     """Whether the cut planes move with the anchor ruling."""
     return feature.cuts == "square"

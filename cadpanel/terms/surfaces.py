@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
-from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
+from cadpanel.features.cut_planes import unit_cut_plane_rates, unit_cut_planes
 from cadpanel.features.distance import middle, patch_outers, skin_numbers
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
@@ -129,13 +129,8 @@ def cut_planes_of(layout: Layout, walks: Sequence[Walk]) -> CutPlanes:
 
 
 def _cut_planes(walked: Walk) -> CutPlanes:
-    m, s = cut_planes(walked)
-    size = np.sqrt(dot(m, m))
-    unit, place = m / size[..., None], s / size
+    m, s = unit_cut_planes(walked)
     if walked.carriers.twist is None:
-        return CutPlanes(unit, place, None, None)
-    dm, ds = (walked.feature.by_unknowns(rates) for rates in cut_plane_rates(walked))
-    growth = (unit[..., None, :] @ dm)[..., 0, :]
-    dm = (dm - unit[..., None] * growth[..., None, :]) / size[..., None, None]
-    ds = (ds - place[..., None] * growth) / size[..., None]
-    return CutPlanes(unit, place, dm, ds)
+        return CutPlanes(m, s, None, None)
+    dm, ds = (walked.feature.by_unknowns(rates) for rates in unit_cut_plane_rates(walked))
+    return CutPlanes(m, s, dm, ds)

@@ -12,12 +12,12 @@ import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.errors import SettingsError
-from cadpanel.features.distance import patch_outers
+from cadpanel.features.distance import patch_outers, round_numbers
 from cadpanel.features.layout import Group
 from cadpanel.features.patch_checks import greatest_radius
 from cadpanel.features.rulings import PanelFeature, Points, Walk
 from cadpanel.geometry.frames import point_velocity
-from cadpanel.geometry.vectors import dot
+from cadpanel.geometry.vectors import beside, dot
 from cadpanel.terms.limits.chains import chains_of
 from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
@@ -81,25 +81,20 @@ class RadiusTerm(LackTerm):
 
     def lengths(self, walked: Walk, corners: Points, *, derivatives: bool) -> tuple[Array, Array]:
         """The radii at four corners of every curved patch, positive on its own side of the axis."""
-        parts = [_radii(walked, corners, patch, derivatives=derivatives) for patch in self._curved]
-        return np.concatenate([part[0] for part in parts], axis=1), np.concatenate([part[1] for part in parts], axis=1)
-
-
-def _radii(walked: Walk, corners: Points, patch: int, *, derivatives: bool) -> tuple[Array, Array]:
-    edges, rulings = walked.edges, walked.edges.p.shape[1]
-    which = np.array([patch, patch + 1, patch, patch + 1])
-    places = which + np.array([0, 0, rulings, rulings])
-    radius, angle = (walked.dimensions[patch].values[:, i, None] for i in (0, 1))
-    sign, widening = np.sign(radius), np.tan(angle)
-    height = dot(corners.position[:, places] - edges.p[:, which], edges.t[:, which])
-    radii = sign * (radius + height * widening)
-    if not derivatives:
-        return radii, np.zeros((*radii.shape, 0))
-    if corners.jacobian is None or edges.twist is None:
-        raise ValueError("the state was walked without derivatives")
-    # The corner lies on the ruling, so turning the ruling does not change its height to first order.
-    moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
-    slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
-    inner = np.stack([np.ones_like(height), height * (1.0 + widening**2)], axis=-1)
-    slope += inner @ patch_outers(walked)[:, patch][:, 6:]
-    return radii, sign[..., None] * slope
+        edges, rulings = walked.edges, walked.edges.frames.shape[1]
+        which = np.add.outer(self._curved, [0, 1, 0, 1]).reshape(-1)
+        places = which + np.tile([0, 0, rulings, rulings], len(self._curved))
+        radius, angle = (np.repeat(one[:, self._curved], 4, axis=1) for one in round_numbers(walked)[:2])
+        sign, widening = np.sign(radius), np.tan(angle)
+        height = dot(corners.position[:, places] - edges.p[:, which], edges.t[:, which])
+        radii = sign * (radius + height * widening)
+        if not derivatives:
+            return radii, np.zeros((*radii.shape, 0))
+        if corners.jacobian is None or edges.twist is None:
+            raise ValueError("the state was walked without derivatives")
+        # The corner lies on the ruling, so turning the ruling does not change its height to first order.
+        moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
+        slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
+        inner = beside([np.ones_like(height).reshape(-1), (height * (1.0 + widening**2)).reshape(-1)])
+        by_patch = inner.reshape(len(height), -1, 4, 2) @ patch_outers(walked)[:, self._curved, 6:]
+        return radii, sign[..., None] * (slope + by_patch.reshape(slope.shape))

@@ -12,12 +12,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from cadpanel.arrays import Array
-from cadpanel.features.cut_planes import cut_plane_rates, cut_planes
-from cadpanel.features.distance import patch_outers
+from cadpanel.features.cut_planes import unit_cut_plane_rates, unit_cut_planes
+from cadpanel.features.distance import patch_outers, round_numbers
 from cadpanel.features.layout import Group
 from cadpanel.features.rulings import Points, Walk
 from cadpanel.geometry.chain_checks import LARGEST_ECCENTRICITY, SMALLEST_CUT_COSINE
-from cadpanel.geometry.vectors import cross, dot
+from cadpanel.geometry.vectors import cross
 from cadpanel.terms.limits.chains import chains_of
 from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
@@ -92,44 +92,39 @@ class ObliquenessTerm(LackTerm):
     def lengths(self, walked: Walk, corners: Points, *, derivatives: bool) -> tuple[Array, Array]:
         """Sines of the angles to rulings, end by end, and what is left of those to cones, moved by the least sine."""
         del corners
-        planes, rates = _unit_normals(walked, derivatives=derivatives)
+        planes, rates = unit_cut_planes(walked)[0], unit_cut_plane_rates(walked)[0] if derivatives else None
         parts = [_rise(walked.edges.t, walked.edges.twist if derivatives else None, planes, rates)]
-        parts += [self._cone(walked, patch, planes, rates) for patch in self._cones]
+        if self._cones:
+            parts.append(self._at_cones(walked, planes, rates))
         sines, slopes = (np.concatenate([part[which] for part in parts], axis=1) for which in (0, 1))
         return self._far * sines, self._far[..., None] * slopes
 
-    def _cone(self, walked: Walk, patch: int, planes: Array, rates: Array | None) -> tuple[Array, Array]:
-        """C sqrt(e^2 + tan(g)^2) -+ tan(g) of both ends, both of which are 0 or more where the section is an ellipse.
+    def _at_cones(self, walked: Walk, planes: Array, rates: Array | None) -> tuple[Array, Array]:
+        """C sqrt(e^2 + tan(g)^2) -+ tan(g) of all cones, both of which are 0 or more where the section is an ellipse.
 
-        Whichever sign the half angle has: their smaller one has a corner at a half angle of 0, each has none.
+        Whichever sign the half angle has: their smaller one has a corner at a half angle of 0, each has none. First
+        those with - of both ends, end by end, then those with +.
         """
-        t, n = walked.carriers.t[:, patch], walked.carriers.n[:, patch]
-        angle = walked.dimensions[patch].values[:, 1, None]
-        cosine, sine, widening = np.cos(angle), np.sin(angle), np.tan(angle)
-        axis = cosine * t - sine * n
-        outer = None if rates is None else patch_outers(walked)[:, patch]
-        rise, risen = _rise(axis[:, None], None if outer is None else outer[:, None, :6], planes, rates)
+        panels, ends = planes.shape[:2]
+        t, n = walked.carriers.t[:, self._cones], walked.carriers.n[:, self._cones]
+        angle = round_numbers(walked)[1][:, self._cones]
+        cosine, sine, widening = np.cos(angle)[..., None], np.sin(angle)[..., None], np.tan(angle)[:, None]
+        outer = None if rates is None else patch_outers(walked)[:, self._cones]
+        rise, risen = _rise(cosine * t - sine * n, None if outer is None else outer[:, :, :6], planes, rates)
+        rise = rise.reshape(panels, ends, -1)
         root = np.sqrt(LARGEST_ECCENTRICITY**2 + widening**2)
         values = np.concatenate([root * rise - widening, root * rise + widening], axis=1) + self._sine
+        values = values.reshape(panels, -1)
         if outer is None:
             return values, np.zeros((*values.shape, 0))
-        opened = outer[:, 7][:, None]
-        risen = risen + dot(planes, (-sine * t - cosine * n)[:, None])[..., None] * opened
+        opened = outer[:, None, :, 7]
+        risen = (
+            risen.reshape(*rise.shape, -1) + (planes @ np.swapaxes(-sine * t - cosine * n, 1, 2))[..., None] * opened
+        )
         steeper = (1.0 + widening**2)[..., None] * opened
         both = root[..., None] * risen + (rise * widening / root)[..., None] * steeper
-        return values, np.concatenate([both - steeper, both + steeper], axis=1)
-
-
-def _unit_normals(walked: Walk, *, derivatives: bool) -> tuple[Array, Array | None]:
-    """Unit normals (n, ends, 3) of the cut planes, and their derivatives (n, ends, 3, N)."""
-    m, _ = cut_planes(walked)
-    size = np.sqrt(dot(m, m))[..., None]
-    unit = m / size
-    if not derivatives:
-        return unit, None
-    dm, _ = cut_plane_rates(walked)
-    along = unit[..., None, :] @ dm
-    return unit, (dm - unit[..., None] * along) / size[..., None]
+        slopes = np.concatenate([both - steeper, both + steeper], axis=1)
+        return values, slopes.reshape(*values.shape, -1)
 
 
 def _rise(t: Array, twist: Array | None, planes: Array, rates: Array | None) -> tuple[Array, Array]:

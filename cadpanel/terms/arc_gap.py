@@ -121,10 +121,10 @@ class ArcGap(HeldTerm):
         m = state.cuts.m[of.other, of.end]
         # How the distances follow the point itself: the cone's normal, and the cut plane's.
         gradients = np.stack([-inner[..., 3:6], np.broadcast_to(m[:, None], points.shape)], axis=2)
-        moved = of.carrying.rates(slopes(state.arcs)[of.own[:, None], of.places])
+        by_own = of.carrying.slopes(gradients, slopes(state.arcs)[of.own[:, None], of.places])
         by_cone = (inner[..., None, :] @ outer[of.other[:, None], of.patch])[..., 0, :]
         by_cut = points @ dm[of.other, of.end] - ds[of.other, of.end][:, None]
-        return distances, gradients @ moved, np.stack([by_cone, by_cut], axis=2)
+        return distances, by_own, np.stack([by_cone, by_cut], axis=2)
 
 
 def _halves(values: Array) -> tuple[Array, Array]:

@@ -166,7 +166,7 @@ class MixedGap(HeldTerm):
 
     def _held(self, state: State, side: _Side, *, derivatives: bool) -> _Held:
         points = side.carrying.points(side.taken(state.boundary.position))
-        moved = side.carrying.rates(side.taken(slopes(state.boundary))) if derivatives else None
+        moved = side.taken(slopes(state.boundary)) if derivatives else None
         return _from_line(state, side, points, moved) if side.straight else _from_end(state, side, points, moved)
 
 
@@ -188,7 +188,7 @@ def _from_line(state: State, side: _Side, points: Array, moved: Array | None) ->
     turned = (r[..., None, :] @ de)[..., 0, :]
     by_other -= e[..., None] * ((away + turned) / square[..., None])[..., None, :]
     across = np.eye(3) - e[..., :, None] * e[..., None, :] / square[..., None, None]
-    return _Held(r, across @ moved, by_other)
+    return _Held(r, side.carrying.slopes(across, moved), by_other)
 
 
 def _from_end(state: State, side: _Side, points: Array, moved: Array | None) -> _Held:
@@ -211,4 +211,4 @@ def _from_end(state: State, side: _Side, points: Array, moved: Array | None) -> 
     by_other = np.zeros((*points.shape[:2], 3, surfaces.outer.shape[-1]))
     by_other[:, :, 0] = (inner[..., None, :] @ surfaces.outer[other[:, None], patch])[..., 0, :]
     by_other[:, :, 1] = points @ cuts.dm[other, end] - cuts.ds[other, end][:, None]
-    return _Held(vectors, gradients @ moved, by_other)
+    return _Held(vectors, side.carrying.slopes(gradients, moved), by_other)

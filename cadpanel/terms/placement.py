@@ -26,9 +26,15 @@ class Carrying:
         """Points (g, q, 3) of the first frames in the others."""
         return np.asarray(points @ np.swapaxes(self.turn, 1, 2) + self.shift)
 
-    def rates(self, rates: Array) -> Array:
-        """(g, q, 3, unknowns) how such points follow unknowns."""
-        return np.asarray(self.turn[:, None] @ rates)
+    def slopes(self, gradients: Array, rates: Array) -> Array:
+        """(g, q, d, unknowns) how numbers follow unknowns through points (g, q) of the first frames.
+
+        Args:
+            gradients: (g, q, d, 3) of the numbers by the points in the other frames.
+            rates: (g, q, 3, unknowns) of the points in their own frames.
+        """
+        # It is a few gradients that are turned, not the rates for every unknown.
+        return np.asarray((gradients @ self.turn[:, None]) @ rates)
 
     def after(self, other: Carrying) -> Carrying:
         """The same, and after it another's frames."""

@@ -82,4 +82,4 @@ def patch_outers(walked: Walk) -> Array:
 
 def skin_normals(walked: Walk, x: Array, patch: IntArray) -> Array:
     """(panels, m, 3) the skin's unit normals at the foot points of points x (3, panels, m) on their patches."""
-    return np.moveaxis(np.broadcast_to(skins_under(walked, patch).normals(x), x.shape), 0, 2)
+    return np.moveaxis(skins_under(walked, patch).normals(x), 0, 2)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array, BoolArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 
 # The eight numbers that a patch's distance depends on: the twist of its ruling (6), normal radius, half angle.
 INNER = 8
@@ -48,38 +48,52 @@ class Skins:
 
     def distance(self, x: Array) -> Array:
         """(...) signed distances of points x (3, ...)."""
-        if self.curved is False:
-            return inner_product(x - self.p, self.n)
-        _, _, rho, z = self._parts(x)
-        bent = self._apart(rho, z)
-        return bent if self.curved is True else np.where(self.curved, bent, inner_product(x - self.p, self.n))
+        if self.curved is True:
+            return self._apart(*self._parts(x)[2:])
+        distance = inner_product(x - self.p, self.n)
+        if self.curved is not False:
+            index, cones = self._cones()
+            distance.reshape(-1)[index] = cones.distance(_at(x, index))
+        return distance
 
     def distance_inner(self, x: Array) -> tuple[Array, Array]:
         """The same, and (8, ...) the derivatives by the twist of the ruling, the radius and the half angle."""
         inner = np.zeros((INNER, *x.shape[1:]))
-        if self.curved is False:
-            return inner_product(x - self.p, self.n), _by_twist(inner, x, self.n)
-        axis, radial, rho, z = self._parts(x)
-        sign, cosine, sine = np.sign(self.radius), np.cos(self.half_angle), np.sin(self.half_angle)
-        inverse = sign * cosine / np.maximum(rho, np.finfo(float).tiny)
-        normal = inverse * radial - sine * axis
-        # The axis tilts by da = -(sin(g) t + cos(g) n); da is at right angles to a.
-        outward = -inner_product(radial, sine * self.t + cosine * self.n)
-        inner[6] = inner_product(normal, self.n) - 1.0
-        inner[7] = -sign * rho * sine - z * cosine - (inverse * z + sine) * outward
-        distance = self._apart(rho, z)
-        if self.curved is not True:
-            distance = np.where(self.curved, distance, inner_product(x - self.p, self.n))
-            normal = np.where(self.curved, normal, self.n)
-            inner[6:] *= self.curved
-        return distance, _by_twist(inner, x, normal)
+        if self.curved is True:
+            axis, radial, rho, z = self._parts(x)
+            sign, cosine, sine = np.sign(self.radius), np.cos(self.half_angle), np.sin(self.half_angle)
+            inverse = sign * cosine / np.maximum(rho, np.finfo(float).tiny)
+            normal = inverse * radial - sine * axis
+            # The axis tilts by da = -(sin(g) t + cos(g) n); da is at right angles to a.
+            outward = -inner_product(radial, sine * self.t + cosine * self.n)
+            inner[6] = inner_product(normal, self.n) - 1.0
+            inner[7] = -sign * rho * sine - z * cosine - (inverse * z + sine) * outward
+            return self._apart(rho, z), _by_twist(inner, x, normal)
+        distance = inner_product(x - self.p, self.n)
+        _by_twist(inner, x, self.n)
+        if self.curved is not False:
+            index, cones = self._cones()
+            distance.reshape(-1)[index], inner.reshape(INNER, -1)[:, index] = cones.distance_inner(_at(x, index))
+        return distance, inner
 
     def normals(self, x: Array) -> Array:
         """(3, ...) unit normals under points x (3, ...), on the side of n."""
-        axis, radial, rho, _ = self._parts(x)
-        scale = np.sign(self.radius) * np.cos(self.half_angle) / np.maximum(rho, np.finfo(float).tiny)
-        bent = scale * radial - np.sin(self.half_angle) * axis
-        return bent if self.curved is True else np.where(self.curved, bent, self.n)
+        if self.curved is True:
+            axis, radial, rho, _ = self._parts(x)
+            scale = np.sign(self.radius) * np.cos(self.half_angle) / np.maximum(rho, np.finfo(float).tiny)
+            return np.asarray(scale * radial - np.sin(self.half_angle) * axis)
+        normals = np.broadcast_to(self.n, x.shape).copy()
+        if self.curved is not False:
+            index, cones = self._cones()
+            normals.reshape(3, -1)[:, index] = cones.normals(_at(x, index))
+        return normals
+
+    def _cones(self) -> tuple[IntArray, Skins]:
+        """Which of the surfaces of points, counted one by one, are cones; and these."""
+        index = np.flatnonzero(self.curved)
+        t, n, p = (_at(axis, index) for axis in (self.t, self.n, self.p))
+        radius, half_angle = (np.take(numbers, index) for numbers in (self.radius, self.half_angle))
+        return index, Skins(t, n, p, radius, half_angle, curved=True)
 
     def _parts(self, x: Array) -> tuple[Array, Array, Array, Array]:
         """Of cones the axis (3, ...); the way from there square to it (3, ...) and its length; how far along it."""
@@ -92,6 +106,11 @@ class Skins:
     def _apart(self, rho: Array, z: Array) -> Array:
         away = np.sign(self.radius) * rho * np.cos(self.half_angle) - z * np.sin(self.half_angle)
         return np.asarray(away - self.radius)
+
+
+def _at(values: Array, index: IntArray) -> Array:
+    """Columns (rows, chosen) of values (rows, ...), their other axes counted as one."""
+    return np.take(values.reshape(len(values), -1), index, axis=1)
 
 
 def _by_twist(inner: Array, x: Array, normal: Array) -> Array:

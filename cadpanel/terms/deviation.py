@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array, IntArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.distance import assign, patch_outers, skins_under
 from cadpanel.features.layout import Group, Layout
 from cadpanel.features.rulings import Walk
+from cadpanel.geometry.cone import INNER
 from cadpanel.solver.blocks import Normal
 from cadpanel.terms.rows import Rows
 from cadpanel.terms.state import State
@@ -39,16 +40,12 @@ class _Chunk:
         """(n, k, 8, unknowns) how the inner numbers of the patches follow the unknowns."""
         return self.walked.feature.by_unknowns(patch_outers(self.walked))
 
-    def linear(self) -> tuple[Array, Array, Array]:
-        """Residuals (n, m), how they follow the numbers of their own patches (n, 8, m), and that by patch (n, k, 8, m).
-
-        The latter is zero for samples of other patches.
-        """
+    def linear(self) -> tuple[Array, Array, BoolArray]:
+        """Residuals (n, m), how they follow their own patches' numbers (n, 8, m), and whose they are (n, k, m)."""
         patch = self.assign()
         distance, inner = skins_under(self.walked, patch).distance_inner(self.samples)
-        rows = np.moveaxis(inner * self.roots, 0, 1)
         mine = patch[:, None] == np.arange(len(self.walked.feature.patches))[:, None]
-        return distance * self.roots, rows, rows[:, None] * mine[:, :, None]
+        return distance * self.roots, np.moveaxis(inner * self.roots, 0, 1), mine
 
     def assign(self) -> IntArray:
         """The patch (n, m) of each sample, as near as it is allowed to the one under its foot point."""
@@ -102,8 +99,12 @@ class Deviation:
         for chunk in self._chunks(state):
             residual, rows, mine = chunk.linear()
             panels, count = chunk.panels, chunk.outer.shape[3]
-            slope = mine @ residual[:, None, :, None]
-            bend = mine @ np.swapaxes(rows, 1, 2)[:, None]
+            slope, bend = np.empty(chunk.outer.shape[:3]), np.empty((*chunk.outer.shape[:3], INNER))
+            turned, own = np.swapaxes(rows, 1, 2), np.empty(rows.shape)
+            for i in range(mine.shape[1]):
+                np.multiply(rows, mine[:, i, None], out=own)
+                slope[:, i] = (own @ residual[..., None])[..., 0]
+                bend[:, i] = own @ turned
             outer = chunk.outer.reshape(len(panels), -1, count)
             moved = (bend @ chunk.outer).reshape(outer.shape)
             turned = np.swapaxes(outer, 1, 2)
@@ -116,11 +117,11 @@ class Deviation:
         """See `Term.rows`."""
         rows = []
         for chunk in self._chunks(state):
-            residual, _, mine = chunk.linear()
+            residual, own, mine = chunk.linear()
             panels, count = chunk.panels, chunk.outer.shape[3]
             jacobian = np.zeros((*residual.shape, state.layout.size))
-            by_inner = np.swapaxes(mine.reshape(len(panels), -1, residual.shape[1]), 1, 2)
-            jacobian[..., :count] = by_inner @ chunk.outer.reshape(len(panels), -1, count)
+            by_patch = (own[:, None] * mine[:, :, None]).reshape(len(panels), -1, residual.shape[1])
+            jacobian[..., :count] = np.swapaxes(by_patch, 1, 2) @ chunk.outer.reshape(len(panels), -1, count)
             rows.append(Rows(residual, (panels,), (jacobian,)))
         return rows
 

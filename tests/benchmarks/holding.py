@@ -44,6 +44,8 @@ app = typer.Typer(add_completion=False)
 
 # scipy is done where it costs this much more than ours and holds to this share.
 AS_GOOD, HOLDS = 1.01, 1.001
+# With the weights that hold everything local fits, whose gaps are open, cost 1 % more than the least: it has to be met.
+MET = 1e-4
 
 
 @app.command()
@@ -274,7 +276,7 @@ def _trf(problem: Problem, start: Array, how: FitSettings, known: Array, limit: 
     for term, weight in zip(held, end.multipliers, strict=True):
         term.hold.weight = term.hold.weight + (0.0 if term.hold.one_sided else weight)
     model = Objective(problem, [problem.deviation, *held], coupled=True)
-    target = float(model.cost(end.best.unknowns).sum()) * AS_GOOD**2
+    target = float(model.cost(end.best.unknowns).sum()) * (1.0 + MET)
     return scipys(Prepared(model, start), target, limit, scaled=False)[0]
 
 

@@ -31,7 +31,8 @@ class FlatDxf(Output):
         place = folder / FLAT
         try:
             place.mkdir()
-            for name, drawing in drawings_of(delivery).items():
+            delivery.drawn.update(drawings_of(delivery))
+            for name, drawing in delivery.drawn.items():
                 (place / f"{name}{ENDING}").write_bytes(dxf_bytes(drawing, frame, entities))
         except OSError as error:
             raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error

@@ -53,6 +53,9 @@ _CALM = {
     "distributed.admin.tick.interval": "2s",
     "distributed.admin.tick.limit": "1h",  # the kernel gives Python no turn for as long as it likes
     "distributed.admin.system-monitor.interval": "10s",
+    # Without the variable by which dask has the C library give back memory at once: to get it again for every array
+    # takes a fit half as long again.
+    "distributed.nanny.pre-spawn-environ": {"OMP_NUM_THREADS": 1, "MKL_NUM_THREADS": 1, "OPENBLAS_NUM_THREADS": 1},
 }
 """Settings of the workers that are started here."""
 

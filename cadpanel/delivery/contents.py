@@ -9,7 +9,6 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 
 if TYPE_CHECKING:  # they take their time to load, and a refusal asks for names only
-    from cadpanel.delivery.drawing.entities import Drawing
     from cadpanel.delivery.records.flat_parts import FlatPart
     from cadpanel.delivery.records.report import PanelModel, SeamModel, SummaryModel
     from cadpanel.geometry.panel import Panel
@@ -31,8 +30,8 @@ class Contents:
             reports from before there were joints.
         origin: what has to be added to local coordinates to have the model's, mm.
         summary: what the whole fit is judged by; None where no file tells of it.
-        drawn: the drawings that were made of all this, by their names, from when they are written until they are
-            proved; `dataclasses.replace` forgets them.
+        drawn: the drawings (see `drawing.entities`) that were made of all this, by their names, from when they are
+            written until they are proved; `dataclasses.replace` forgets them.
     """
 
     title: str
@@ -45,7 +44,7 @@ class Contents:
     joint: float | None = 0.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     summary: SummaryModel | None = None
-    drawn: dict[str, Drawing] = field(init=False, default_factory=dict, repr=False, compare=False)
+    drawn: dict[str, object] = field(init=False, default_factory=dict, repr=False, compare=False)
 
     @property
     def placed(self) -> tuple[float, float, float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -44,7 +44,7 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     Raises:
         DeliveryError: one of them is missing or cannot be read.
     """
-    drawn = dict(contents.drawn)
+    drawn = cast(dict[str, Drawing], dict(contents.drawn))
     contents.drawn.clear()
     whole = folder / f"{ALL}{_ENDING}"
     frame, errors, contours = _audited(whole, contents.shop)

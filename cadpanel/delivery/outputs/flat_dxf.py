@@ -31,8 +31,9 @@ class FlatDxf(Output):
         place = folder / FLAT
         try:
             place.mkdir()
-            delivery.drawn.update(drawings_of(delivery))
-            for name, drawing in delivery.drawn.items():
+            drawings = drawings_of(delivery)
+            delivery.drawn.update(drawings)
+            for name, drawing in drawings.items():
                 (place / f"{name}{ENDING}").write_bytes(dxf_bytes(drawing, frame, entities))
         except OSError as error:
             raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error

@@ -21,6 +21,7 @@ from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
 from cadpanel.brep.files.model import Model
 from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
+from cadpanel.brep.isolation.processors import given_processors
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
 from cadpanel.brep.isolation.time_limit import limit_time, stop_limit
 from cadpanel.brep.kernel.said import said_by
@@ -127,7 +128,8 @@ def answer(request: Request, answers: BinaryIO) -> object:
 
 def _done(request: Request, stages: _Stages) -> object:
     try:
-        return WORKS[request.work](request, stages.go_on)
+        with given_processors(request.processors):
+            return WORKS[request.work](request, stages.go_on)
     except CadpanelError:
         raise
     except Exception as error:

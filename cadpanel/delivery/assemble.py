@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cadpanel.brep.step.file import write_assembly
 from cadpanel.brep.step.part_files import PartFile
 from cadpanel.brep.step.products import Header
+from cadpanel.delivery.hung import Hung, hung_by
 from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.delivery.own_files import REPORT
-from cadpanel.delivery.records.report import ReportModel, read_report
+from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.source_date import source_date
 from cadpanel.errors import DeliveryError
 from cadpanel.kinds import checked
@@ -33,13 +34,33 @@ def assemble(deliveries: Sequence[str | Path], file: str | Path) -> None:
         DeliveryError: a folder holds no delivery, two are called alike or have different schemas, one has a path that
             readers of STEP do not find again, or the file cannot be written.
     """
-    target = Path(file).absolute()
-    reports = {Path(folder).absolute(): read_report(Path(folder) / REPORT) for folder in deliveries}
-    _demand_parts(list(reports), target)
-    schemas = {report.settings.step_schema for report in reports.values()}
+    # One report at a time: of a whole building they take more memory than everything else.
+    told = {Path(folder).absolute(): hung_by(read_report(Path(folder) / REPORT)) for folder in deliveries}
+    assemble_told(told, Path(file).absolute())
+
+
+def assemble_told(told: Mapping[Path, Hung], target: Path) -> None:
+    """The same where it is known how each delivery hangs.
+
+    Args:
+        told: of each folder, absolute.
+        target: the file, absolute.
+
+    Raises:
+        DeliveryError: see `assemble`.
+    """
+    _demand_parts(list(told), target)
+    schemas = {one.schema for one in told.values()}
     if len(schemas) != 1:
         raise DeliveryError(f"'{target.name}' cannot hold {', '.join(sorted(schemas)) or 'no delivery'}: choose one.")
-    parts = [_part(folder, report, target.parent) for folder, report in reports.items()]
+    parts = [
+        PartFile(
+            name=folder.name,
+            path=Path(os.path.relpath(folder / PANELS, target.parent)).as_posix(),
+            placed=one.placed,
+        )
+        for folder, one in told.items()
+    ]
     write_assembly(target, parts, title=target.stem, schema=schemas.pop(), header=Header(date=source_date()))
 
 
@@ -51,10 +72,3 @@ def _demand_parts(folders: Sequence[Path], target: Path) -> None:
     for folder in folders:
         if not (folder / PANELS).is_file():
             raise DeliveryError(f"'{folder}' holds no {PANELS} to hang in '{target.name}': deliver that region again.")
-
-
-def _part(folder: Path, report: ReportModel, beside: Path) -> PartFile:
-    """What hangs in the assembly: a file in local coordinates is put where these lie in the model."""
-    path = Path(os.path.relpath(folder / PANELS, beside)).as_posix()
-    placed = (0.0, 0.0, 0.0) if report.origin.kept else report.origin.offset
-    return PartFile(name=folder.name, path=path, placed=placed)

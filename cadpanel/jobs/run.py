@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cadpanel.delivery.folder import delivery_folder, refuse_if_taken
+from cadpanel.delivery.hung import Hung, hung_by
 from cadpanel.delivery.manifest import changed_files
 from cadpanel.delivery.own_files import JOB, LITTER, REPORT
 from cadpanel.delivery.records.report import read_report
@@ -79,7 +80,7 @@ def make_regions(
             run.came(made, [part for part in missing if part[1].key == made.key])
     finally:
         summary = run.summary()
-        written, said = put_together(place.out, [row.region for row in summary.rows if row.panels is not None])
+        written, said = put_together(place.out, run.hung())
         summary = summary.model_copy(update={"assembly": BUILDING if written else None, "unassembled": said})
         write_summary(summary, place.out)
     return summary
@@ -89,11 +90,13 @@ class _Run:
     """What is known of every region so far."""
 
     def __init__(self, place: Place, results: Results | None, rows: dict[str, RowModel]) -> None:
-        self._place, self._results, self._rows, self._codes = place, results, rows, dict[str, int]()
+        self._place, self._results, self._rows = place, results, rows
+        self._codes, self._hung = dict[str, int](), dict[str, Hung]()
 
     def stands(self, region: Region) -> None:
         """A region's delivery is in its place already."""
         report = read_report(self._place.out / region.name / REPORT)
+        self._hung[region.name] = hung_by(report)
         said = None if report.summary.tolerance_met else "not everything holds that is asked: see its report"
         said = said or stock_shortfall(report)
         self._tell(row_of(region.name, report, "there", said, 0), MET if said is None else MISSED)
@@ -121,6 +124,10 @@ class _Run:
         """Of all regions."""
         return SummaryModel(code=max(self._codes.values(), default=MET), rows=tuple(self._rows.values()))
 
+    def hung(self) -> dict[str, Hung]:
+        """Of all deliveries that are in their places, in the order of the job, how they hang in an assembly."""
+        return {name: self._hung[name] for name in self._rows if name in self._hung}
+
     def _put(self, region: Region, task: Task, archive: bytes, state: State, tries: int) -> None:
         target = self._place.out / region.name
         overwrite = self._place.overwrite
@@ -128,6 +135,7 @@ class _Run:
             said = unpacked(archive, folder)
             report = read_report(folder / REPORT)
             (folder / JOB).write_text(job_text([(region, task)], target), encoding="utf-8")
+        self._hung[region.name] = hung_by(report)
         self._tell(row_of(region.name, report, state, said, tries), MET if said is None else MISSED)
 
     def _tell(self, row: RowModel, code: int) -> None:

@@ -16,11 +16,12 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
+from cadpanel.brep.isolation.processors import given_processors, usable
 from cadpanel.delivery.source_date import VARIABLE
 from cadpanel.errors import CadpanelError, DeliveryError, ProofError
 from cadpanel.jobs.archive import packed
 from cadpanel.jobs.make import Asked, make_delivery
-from cadpanel.jobs.task import Task, located, program, program_sum
+from cadpanel.jobs.task import Content, Task, located, program, program_sum
 
 RETRIES = 2
 """How often a task that has failed is tried again; what is refused would be refused again, and is not."""
@@ -53,27 +54,30 @@ class Made:
     tries: int = 1
 
 
-def work(task: Task, contents: Sequence[bytes], tell: Tell) -> Made:
+def work(task: Task, contents: Sequence[Content | bytes], tell: Tell, *, side_by_side: int = 1) -> Made:
     """Make the delivery of a task; a failure that nobody foresaw is tried again, and told in the end.
 
     Args:
         task: what is to be made.
-        contents: the bytes of its files, in their order.
+        contents: its files, where they lie here, or their bytes, in their order.
         tell: told of the steps.
+        side_by_side: how many tasks are worked at on this machine at once, which share its processors. What is made
+            does not depend on it.
     """
     if task.program != program_sum():
         said = f"the worker has another cadpanel, {program()['version']}, or other packages: install one everywhere"
-        return Made(key=task.key, code=REFUSED, archive=None, said=said)
+        return refused(task, said)
     for tries in range(1, RETRIES + 2):
         try:
-            archive, missed = _made(task, contents, tell)
+            with given_processors(max(1, usable() // side_by_side)):
+                archive, missed = _made(task, contents, tell)
         except ProofError as error:
             said = f"the proof does not hold: {' '.join(error.failures)}"
             return Made(key=task.key, code=MISSED, archive=None, said=said, tries=tries)
         except DeliveryError as error:  # of a disk, which may have room the next time
-            failed = Made(key=task.key, code=REFUSED, archive=None, said=str(error), tries=tries)
+            failed = refused(task, error, tries)
         except CadpanelError as error:
-            return Made(key=task.key, code=REFUSED, archive=None, said=str(error), tries=tries)
+            return refused(task, error, tries)
         except Exception as error:  # noqa: BLE001 - the others go on, and whoever sits there is told of this one
             said = f"{type(error).__name__}: {' '.join(str(error).split())}"
             details = "".join(traceback.format_exception(error))
@@ -84,13 +88,18 @@ def work(task: Task, contents: Sequence[bytes], tell: Tell) -> Made:
     return failed
 
 
-def _made(task: Task, contents: Sequence[bytes], tell: Tell) -> tuple[bytes, str | None]:
+def refused(task: Task, why: object, tries: int = 1) -> Made:
+    """What comes of a task that is refused, in a sentence."""
+    return Made(key=task.key, code=REFUSED, archive=None, said=str(why), tries=tries)
+
+
+def _made(task: Task, contents: Sequence[Content | bytes], tell: Tell) -> tuple[bytes, str | None]:
     with tempfile.TemporaryDirectory(prefix="cadpanel-") as place, _as_told(task.date), threadpool_limits(1):
         paths = []
         for number, (content, data) in enumerate(zip(task.contents, contents, strict=True)):
             path = Path(place) / str(number) / content.name
             path.parent.mkdir()
-            path.write_bytes(data)
+            path.write_bytes(data.read() if isinstance(data, Content) else data)
             paths.append(path)
         asked = Asked(
             file=paths[0],

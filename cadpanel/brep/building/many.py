@@ -22,8 +22,8 @@ from cadpanel.arrays import Array
 from cadpanel.brep.building.mass_properties import area_and_centroid, volume_and_centroid
 from cadpanel.brep.building.sheet import build_checked, build_panel
 from cadpanel.brep.building.wanted import Sheet
-from cadpanel.brep.isolation.beside import processors
 from cadpanel.brep.isolation.client import READER
+from cadpanel.brep.isolation.processors import processors
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage
 from cadpanel.errors import CadpanelError, PanelError
 from cadpanel.geometry.volume import sheet_volume

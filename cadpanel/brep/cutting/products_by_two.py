@@ -24,7 +24,8 @@ from cadpanel.brep.files.names import call_panels
 from cadpanel.brep.files.step import STEP, read_plain_products
 from cadpanel.brep.files.step_parts import StepPart, cut_in_two
 from cadpanel.brep.files.text_check import check_step_text, contents
-from cadpanel.brep.isolation.beside import POSSIBLE, Channel, Lost, beside, processors
+from cadpanel.brep.isolation.beside import POSSIBLE, Channel, Lost, beside
+from cadpanel.brep.isolation.processors import processors
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK
 from cadpanel.brep.isolation.time_limit import limit_time
 from cadpanel.brep.skin.panel_cleanup import Mended

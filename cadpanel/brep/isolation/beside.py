@@ -72,11 +72,6 @@ class Channel:
                 stream.close()
 
 
-def processors() -> int:
-    """How many processors this process may use at once."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 @contextmanager
 def beside(work: Callable[[Channel], None]) -> Iterator[Channel]:
     """Let a copy of this process do some work until it is done, or this ends.

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import pickle
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
+from cadpanel.brep.isolation.processors import processors
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.reference.settings import ReferenceSettings
 
@@ -64,6 +65,7 @@ class Request:
         path: the file, as the user named it.
         argument: how; what it is depends on the work.
         stages: one or more.
+        processors: how many the work may keep busy at once; as many as whoever asks may, if nothing else is said.
     """
 
     work: str
@@ -71,6 +73,7 @@ class Request:
     path: Path
     argument: object
     stages: tuple[Stage, ...]
+    processors: int = field(default_factory=processors)
 
 
 def work_request(work: Work, path: Path, settings: ReferenceSettings) -> Request:

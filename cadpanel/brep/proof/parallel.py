@@ -19,6 +19,7 @@ from typing import cast
 
 from cadpanel.brep.building.wanted import Sheet
 from cadpanel.brep.isolation.client import LOOK_UP, READER, Interpreter
+from cadpanel.brep.isolation.processors import processors
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
 from cadpanel.brep.proof.kept_facts import KeptFacts
 from cadpanel.brep.proof.rebuilt import Rebuilt
@@ -165,7 +166,7 @@ class Helper:
 def second_interpreter(panels: int) -> Iterator[Helper | None]:
     """Start what a delivery of so many panels is inspected by; a helper, too, where it pays and has a processor."""
     READER.start()
-    if (os.cpu_count() or 1) < 2 or panels < WORTHWHILE_PANELS:
+    if processors() < 2 or panels < WORTHWHILE_PANELS:
         yield None
         return
     interpreter = Interpreter()

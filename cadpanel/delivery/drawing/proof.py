@@ -9,13 +9,14 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.drawing.dxf import MARK
+from cadpanel.delivery.drawing.entities import Drawing
 from cadpanel.delivery.drawing.part import bend_lines, roll_lines
 from cadpanel.delivery.drawing.redrawn import drawings_of, holds
 from cadpanel.delivery.records.flat_parts import ALL, FlatPart
@@ -43,6 +44,8 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     Raises:
         DeliveryError: one of them is missing or cannot be read.
     """
+    drawn = cast(dict[str, Drawing], dict(contents.drawn))
+    contents.drawn.clear()
     whole = folder / f"{ALL}{_ENDING}"
     frame, errors, contours = _audited(whole, contents.shop)
     failures = [f"'{whole.name}': ezdxf finds {error}." for error in errors]
@@ -62,7 +65,7 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
         off = max([off, *(measured for measured, _ in found)])
     strange = sorted({path.name for path in folder.iterdir()} - {whole.name} - _files(contents.parts))
     if not failures:
-        failures += _redrawn_faults(folder, contents)
+        failures += _redrawn_faults(folder, contents, drawn)
     failures += [f"'{name}' stands among the drawings, and no panel of the report is drawn there." for name in strange]
     return Proof(
         numbers={"drawings": len(contents.parts) + 1, "audit_errors": len(errors), "contour_error": off},
@@ -70,9 +73,9 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     )
 
 
-def _redrawn_faults(folder: Path, contents: Contents) -> Iterator[str]:
+def _redrawn_faults(folder: Path, contents: Contents, drawn: dict[str, Drawing]) -> Iterator[str]:
     """What is drawn besides contours and bends, and how, where these are as they should be."""
-    for name, drawing in drawings_of(contents).items():
+    for name, drawing in (drawn or drawings_of(contents)).items():
         entities = _split(folder / f"{name}{_ENDING}")[1].removeprefix(_VERSION + _ENTITIES).removesuffix(_END)
         if not holds(entities, drawing, contents.shop.dxf_entities):
             yield f"'{name}{_ENDING}' does not hold just what the report's numbers and settings draw."

@@ -31,7 +31,9 @@ class FlatDxf(Output):
         place = folder / FLAT
         try:
             place.mkdir()
-            for name, drawing in drawings_of(delivery).items():
+            drawings = drawings_of(delivery)
+            delivery.drawn.update(drawings)
+            for name, drawing in drawings.items():
                 (place / f"{name}{ENDING}").write_bytes(dxf_bytes(drawing, frame, entities))
         except OSError as error:
             raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error

@@ -1,32 +1,63 @@
 """Tasks worked off by many workers of dask.distributed, on this machine or elsewhere.
 
-Workers need no file of this machine: the bytes of references go to them once, as tasks of their own that the scheduler
-keeps, so that they come again where the worker that had them is lost. What a lost worker was at goes to another one.
+Workers elsewhere need no file of this machine: the bytes of references go to them once, as tasks of their own that the
+scheduler keeps, so that they come again where the worker that had them is lost. Those that are started here read the
+files themselves. What a lost worker was at goes to another one. Only a few tasks are given out at a time, so that
+references and deliveries of a whole building never lie in memory together.
 """
 
 from __future__ import annotations
 
+import gc
 import logging
-from collections.abc import Iterator, Sequence
+from collections import Counter, deque
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from functools import partial
+from dataclasses import replace
+from functools import cache
 from importlib.util import find_spec
+from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from cadpanel.errors import SettingsError
 from cadpanel.jobs.engine.engine import TellOf
-from cadpanel.jobs.task import Task
-from cadpanel.jobs.work import FAILED, Made, work
+from cadpanel.jobs.task import Content, Task
+from cadpanel.jobs.work import FAILED, Made, refused, work
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Future
 
 LOST = 3
 """Workers that may be lost over one task before it is taken to be at fault."""
 _TOPIC = "cadpanel"
 _NEEDED = "distributed"
 _SECONDS_TO_CONNECT = 20
+_AHEAD = 2
+"""Tasks given out for each that can be worked at, so that no worker waits for the next one."""
+_FEWEST = 4
+"""Of them at least, as workers elsewhere may come while the first tasks are worked at."""
+_SECONDS_BETWEEN = 0.5
+"""Between two words on how far a step is; each passes through three processes."""
+_SETTINGS = {
+    "distributed.scheduler.allowed-failures": LOST,
+    "distributed.admin.log-format": "%(message)s",
+    # References are sent as tasks on purpose, see above.
+    "distributed.admin.large-graph-warning-threshold": "1 TiB",
+}
+_CALM = {
+    # Made for tasks of milliseconds. With those of minutes, looking so often at what each process does, and at its
+    # memory, takes a fifth of two processors.
+    "distributed.worker.profile.enabled": False,
+    "distributed.worker.memory.monitor-interval": "2s",
+    "distributed.admin.tick.interval": "2s",
+    "distributed.admin.tick.limit": "1h",  # the kernel gives Python no turn for as long as it likes
+    "distributed.admin.system-monitor.interval": "10s",
+    # Without the variable by which dask has the C library give back memory at once: to get it again for every array
+    # takes a fit half as long again.
+    "distributed.nanny.pre-spawn-environ": {"OMP_NUM_THREADS": 1, "MKL_NUM_THREADS": 1, "OPENBLAS_NUM_THREADS": 1},
+}
+"""Settings of the workers that are started here."""
 
 
 class Cluster:
@@ -61,8 +92,7 @@ class Cluster:
         import dask
         from distributed import Client, LocalCluster
 
-        settings = {"distributed.scheduler.allowed-failures": LOST, "distributed.admin.log-format": "%(message)s"}
-        self._open.enter_context(dask.config.set(settings))
+        self._open.enter_context(dask.config.set(_SETTINGS | (_CALM if self._scheduler is None else {})))
         where: Any = self._scheduler
         if where is None:
             where = self._open.enter_context(
@@ -92,20 +122,29 @@ class Cluster:
         from distributed import as_completed
 
         self.client.subscribe_topic(_TOPIC, lambda event: tell(*event[1]))
-        contents = {content.sha256: content for task in tasks for content in task.contents}
-        sent = {
-            sha256: self.client.submit(_bytes, content.read(), key=f"bytes-{sha256}", pure=True)
-            for sha256, content in contents.items()
-        }
-        waiting = {
-            self.client.submit(
-                _at_a_worker, task, [sent[content.sha256] for content in task.contents], key=f"region-{task.key}"
-            ): task
-            for task in tasks
-        }
-        del sent
-        for future in as_completed(list(waiting), loop=self.client.loop):
-            yield self._made(future, waiting.pop(future))
+        left = deque(tasks)
+        given: dict[Future, Task] = {}
+        contents = _Contents(self.client, tasks, here=self._scheduler is None)
+        ended = as_completed(loop=self.client.loop)
+        while left or given:
+            while left and len(given) < _AHEAD * max(_FEWEST, sum(self.client.nthreads().values())):
+                task = left.popleft()
+                try:
+                    found = contents.of(task)
+                except SettingsError as error:
+                    yield refused(task, error)
+                    continue
+                future = self.client.submit(
+                    _at_a_worker, task, found, _workers_by_host(self.client), key=f"region-{task.key}"
+                )
+                given[future] = task
+                ended.add(future)
+            if not given:
+                return
+            future = next(ended)
+            task = given.pop(future)
+            contents.done(task)
+            yield self._made(future, task)
             future.release()  # what was made is large, and the scheduler keeps it as long as somebody wants it
 
     @staticmethod
@@ -118,16 +157,88 @@ class Cluster:
         return Made(key=task.key, code=FAILED, archive=None, said=said)
 
 
+class _Contents:
+    """What the files of tasks hold, for workers: where they lie, or their bytes, as long as a task needs them."""
+
+    def __init__(self, client: Client, tasks: Sequence[Task], *, here: bool) -> None:
+        self._client, self._here = client, here
+        self._needed = Counter(sha256 for task in tasks for sha256 in _sums(task))
+        self._sent: dict[str, Future] = {}
+
+    def of(self, task: Task) -> list[Content | Future]:
+        """Those of a task.
+
+        Raises:
+            SettingsError: one cannot be read, or has changed since.
+        """
+        if self._here:
+            return [replace(content, path=content.path.absolute()) for content in task.contents]
+        return [self._sent_of(content) for content in task.contents]
+
+    def _sent_of(self, content: Content) -> Future:
+        sha256 = content.sha256
+        if sha256 not in self._sent:
+            self._sent[sha256] = self._client.submit(_bytes, content.read(), key=f"bytes-{sha256}", pure=True)
+        return self._sent[sha256]
+
+    def done(self, task: Task) -> None:
+        """Let go of what no other task needs."""
+        for sha256 in _sums(task):
+            self._needed[sha256] -= 1
+            if not self._needed[sha256]:
+                self._sent.pop(sha256, None)
+
+
+def _sums(task: Task) -> set[str]:
+    return {content.sha256 for content in task.contents}
+
+
+def _workers_by_host(client: Client) -> dict[str, int]:
+    """How many tasks are worked at side by side on each machine."""
+    found = Counter[str]()
+    for address, threads in client.nthreads().items():
+        found[_host(address)] += threads
+    return dict(found)
+
+
+def _host(address: str) -> str:
+    from distributed.comm import get_address_host
+
+    host: str = get_address_host(address)
+    return host
+
+
 def _bytes(data: bytes) -> bytes:
     return data
 
 
-def _at_a_worker(task: Task, contents: Sequence[bytes]) -> Made:
+def _at_a_worker(task: Task, contents: Sequence[Content | bytes], by_host: Mapping[str, int]) -> Made:
     """The same as everywhere, told to whoever listens."""
     from distributed import get_worker
 
-    return work(task, contents, partial(_tell, get_worker(), task.name))
+    worker = get_worker()
+    made = work(task, contents, _Telling(worker, task.name), side_by_side=by_host.get(_host(worker.address), 1))
+    _keep_what_is_loaded()
+    return made
 
 
-def _tell(worker: Any, *said: object) -> None:
-    worker.log_event(_TOPIC, said)
+@cache
+def _keep_what_is_loaded() -> None:
+    """Look for garbage no more among the hundred thousand objects of the kernel's binding, all of which stay."""
+    gc.collect()
+    gc.freeze()
+
+
+class _Telling:
+    """Passes on each step of a region, and now and then how far it is."""
+
+    def __init__(self, worker: Any, region: str) -> None:
+        self._worker, self._region = worker, region
+        self._step, self._until = "", 0.0
+
+    def __call__(self, step: str, done: int, of: int, detail: str) -> None:
+        now = monotonic()
+        if step == self._step and now < self._until:
+            return
+        self._step, self._until = step, now + _SECONDS_BETWEEN
+        self._worker.log_event(_TOPIC, (self._region, step, done, of, detail))

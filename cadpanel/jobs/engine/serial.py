@@ -16,4 +16,4 @@ class Serial:
     def run(self, tasks: Sequence[Task], tell: TellOf) -> Iterator[Made]:
         """See `Engine.run`."""
         for task in tasks:
-            yield work(task, [content.read() for content in task.contents], partial(tell, task.name))
+            yield work(task, task.contents, partial(tell, task.name))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cadpanel.brep.isolation.beside import POSSIBLE, Lost, beside, processors
+from cadpanel.brep.isolation.beside import POSSIBLE, Lost, beside
 
 pytestmark = pytest.mark.skipif(not POSSIBLE, reason="this system copies no processes")
 
@@ -119,7 +119,3 @@ def test_a_copy_holds_no_pipe_open_that_others_wait_to_be_closed():
         os.close(writing)
         assert os.read(reading, 1) == b""
     os.close(reading)
-
-
-def test_a_process_may_use_a_processor():
-    assert processors() >= 1

@@ -191,13 +191,13 @@ def test_a_solid_where_a_skin_should_be_fails(delivery):
 def test_a_second_interpreter_finds_the_same(delivery, monkeypatch):
     alone = delivery.certify()
     monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0)
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     assert delivery.certify() == alone
 
 
 def test_a_second_interpreter_started_ahead_finds_the_same(delivery, monkeypatch):
     alone = delivery.certify()
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
         assert helper is not None
         helper.begin(delivery.skins_step)
@@ -210,7 +210,7 @@ def test_an_interpreter_that_dies_over_a_file_is_one_sentence(delivery, forks, m
     name = getattr(delivery, file).name
     client.stop_reader()
     monkeypatch.setattr(client, "interpreter", lambda _: forks(DIES.format(name=name)))
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     monkeypatch.setattr(parallel, "WORTHWHILE_BYTES", 0 if together else 1 << 40)
     with pytest.raises(DeliveryError, match=rf"'{name}' makes the CAD kernel crash: it is damaged; write the delivery"):
         delivery.certify()
@@ -298,7 +298,7 @@ def test_a_file_cut_short_cannot_be_certified(delivery, file, monkeypatch):
 
 def test_files_that_are_read_ahead_give_the_same_and_are_read_again_for_who_asks_again(delivery, monkeypatch):
     alone = delivery.certify()
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
         assert helper is not None
         helper.open(delivery.panels_step)
@@ -319,7 +319,7 @@ def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monke
 
     monkeypatch.setattr(client.Interpreter, "ask", ask_late)
     monkeypatch.setattr(client, "interpreter", lambda _: forks(SLOW))
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr(parallel, "processors", lambda: 2)
     with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
         assert helper is not None
         opened = helper.open(delivery.panels_step)

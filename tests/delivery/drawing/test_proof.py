@@ -1,11 +1,13 @@
 """Drawings are read back and measured: whatever was changed in one of them shows."""
 
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cadpanel.delivery.contents import Contents
+from cadpanel.delivery.drawing import proof as module
 from cadpanel.delivery.drawing.proof import prove_drawings
 from cadpanel.delivery.outputs.flat_dxf import FLAT, FlatDxf
 from cadpanel.delivery.outputs.output import Delivery
@@ -34,6 +36,23 @@ def drawn(request, tmp_path_factory):
     slots = ("title", "sheet", "shop", "records", "seams", "parts")
     FlatDxf().write(folder, Delivery(panels=(), **{name: getattr(told, name) for name in slots}))
     return folder / FLAT, told
+
+
+def test_what_was_just_drawn_is_not_drawn_again_and_a_change_shows_as_well(tmp_path, monkeypatch):
+    told = contents(ShopSettings())
+    slots = ("title", "sheet", "shop", "records", "seams", "parts")
+    delivery = Delivery(panels=(), **{name: getattr(told, name) for name in slots})
+    monkeypatch.setattr(module, "drawings_of", lambda _: pytest.fail("it is drawn again"))
+    for part, says in ((b"INFO", False), (b"INFA", True)):
+        shutil.rmtree(tmp_path / FLAT, ignore_errors=True)
+        FlatDxf().write(tmp_path, delivery)
+        file = tmp_path / FLAT / f"{next(iter(delivery.drawn))}.dxf"
+        before, word, after = file.read_bytes().rpartition(b"INFO")
+        assert word
+        file.write_bytes(before + part + after)
+        assert not replace(delivery, title="other").drawn
+        assert bool(prove_drawings(tmp_path / FLAT, delivery).failures) == says
+        assert not delivery.drawn
 
 
 @pytest.fixture

@@ -76,7 +76,7 @@ def test_whoever_stops_it_finds_nothing_left(
         os.kill(process.pid, sent)
         _, err = process.communicate(timeout=60)
     assert process.returncode == code
-    lines = [line for line in err.splitlines() if not re.match(r"Fit |.*: at work for \d+ s$", line)]  # its rounds
+    lines = [line for line in err.splitlines() if not re.match(r"Fit |.*: at work for \d+ s(, |$)", line)]  # its rounds
     assert lines[-1:] == said
     assert list(tmp_path.iterdir()) == []
 

@@ -26,7 +26,7 @@ from tests.model_files import Labelled, strip_faces, write_labelled, write_shape
 from tests.reference_shapes import Lip, kernel_lip, write_products
 from tests.thorough import cases
 
-VARIANTS = cases(8, 110)  # of each of six files, so 660 in all in a thorough run
+VARIANTS = cases(8, 60)  # of each of six files, so 360 in all in a thorough run
 SECONDS = 3.0  # after which a reader counts as hanging
 LONGEST_SENTENCE = 1000
 pytestmark = pytest.mark.usefixtures("forked_readers")  # or the kernel would be loaded for every crash
@@ -128,7 +128,7 @@ def test_damaged_delivery_is_refused_or_does_not_hold(tmp_path, file):
     delivery = Delivery(tmp_path, strip())
     path = getattr(delivery, file)
     whole, ends = path.read_bytes(), []
-    for seed in cases((100, 103, 106, 114, 125), range(100, 130)):
+    for seed in cases((100, 103, 106, 114, 125), (*range(100, 130, 2), 103, 125)):
         path.write_bytes(damaged(whole, seed))
         try:
             ends.append(str(delivery.certify().holds))

@@ -39,7 +39,8 @@ LADDERS: dict[str, tuple[Sequence[float], Sequence[float]]] = {
     "drift_outline": ([0.05, 0.3], [0.0005, 0.001, 0.003, 0.01, 0.05]),
     "min_radius": ([200.0, 10.0], [400.0, 300.0, 200.0, 150.0, 100.0, 10.0]),
 }
-LIPS = [f"lip {seed}" for seed in cases([5], [0, 5])]
+# Each limit on one of two lips: a limit takes several seconds on either.
+TRIED = [(f"lip {(0, 5)[place % 2]}", limit) for place, limit in enumerate(LADDERS)]
 
 
 @cache
@@ -60,8 +61,7 @@ def test_every_limit_that_can_be_asked_for_has_a_ladder():
 
 
 @thorough
-@pytest.mark.parametrize("limit", LADDERS)
-@pytest.mark.parametrize("of", LIPS)
+@pytest.mark.parametrize(("of", "limit"), TRIED)
 def test_a_looser_limit_breaks_nothing_that_held_and_costs_no_deviation(of, limit):
     no_worse_by_and_by(of, limit, {})
 
@@ -81,7 +81,7 @@ def no_worse_by_and_by(of: str, limit: str, how: dict[str, str]) -> None:
             assert other.measures.overall_rms <= NO_WORSE * one.measures.overall_rms, told
 
 
-@pytest.mark.parametrize("of", cases([], ["lip 1", "lip 5"]))
+@pytest.mark.parametrize("of", cases([], ["lip 5"]))
 def test_a_kink_that_cannot_be_held_beside_gaps_is_no_larger_where_a_larger_one_was_asked_for(of):
     fits = [cp.fit(strip(of), max_kink=asked) for asked in cases([0.5, 1.0], [0.1, 0.2, 0.5, 1.0, 2.0, 4.0])]
     assert not fits[0].tolerance_met

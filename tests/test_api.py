@@ -15,6 +15,7 @@ from cadpanel.brep.building.mass_properties import volume_and_centroid
 from cadpanel.brep.step.file import read_step_shapes
 from tests.delivered import fitted, strip
 from tests.instances import random_polygon
+from tests.thorough import thorough
 
 
 def test_keywords_change_the_settings_that_are_given() -> None:
@@ -55,6 +56,7 @@ def test_several_shapes_are_built_like_one_and_none_is_refused(tmp_path: Path) -
         cp.to_cadquery([])
 
 
+@thorough
 def test_solids_are_made_as_a_delivery_makes_them(tmp_path: Path) -> None:
     made: dict[str, Any] = {"ends": "square", "fixings": (6.5, 450.0, 40.0), "returns": (30.0, 3.0)}
     report = cp.deliver(fitted(), tmp_path / "out", joint=10.0, outputs="step", **made)

@@ -145,6 +145,7 @@ def test_the_snippets_of_the_pages_run_one_after_the_other(workplace: Path) -> N
     run([sys.executable, "snippets.py"], workplace)
 
 
+@thorough
 @pytest.mark.parametrize("pages", cases([PAGES[:1]], [PAGES]), ids=cases(["the README"], ["all"]))
 def test_the_commands_of_the_pages_run_one_after_the_other(
     pages: list[Path], workplace: Path, monkeypatch: pytest.MonkeyPatch

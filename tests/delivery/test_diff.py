@@ -16,6 +16,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError, SettingsError
 from tests.delivered import fitted, fitted_alone
+from tests.thorough import thorough
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,7 @@ def elsewhere(report: ReportModel, offset: tuple[float, float, float]) -> Report
     return report.model_copy(update={"origin": report.origin.model_copy(update={"offset": offset})})
 
 
+@thorough
 def test_a_delivery_is_the_same_as_itself(folders: dict[str, Path]) -> None:
     found = diff(folders["whole"], folders["whole"])
     assert found.same

@@ -44,6 +44,7 @@ def earlier_places(folder: Path) -> Array:
     return np.array(rules.plain()["lock"][0]["made"])
 
 
+@thorough
 @pytest.mark.parametrize(("ends", "side"), cases([("square", "outer")], [("bevel", "inner"), ("square", "outer")]))
 def test_returns_are_part_of_everything_and_proved(tmp_path: Path, ends: str, side: SkinSide) -> None:
     sheet = SheetSettings(ends=ends, skin_side=side, joint=8.0)  # type: ignore[arg-type]

@@ -25,6 +25,7 @@ def largest(problem, unknowns, settings):
     return max(float(over.max()) for over in seam_excess(problem, unknowns, settings).values())
 
 
+@thorough
 def test_what_comes_nearer_to_what_is_asked_for_is_kept_and_what_must_hold_holds():
     lip, settings = reference(random_lip(5, 3)), FitSettings(max_kink=1.0)
     problem, begin = pose(lip, [settings.feature_for(4)] * 3)

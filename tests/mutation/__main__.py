@@ -37,7 +37,7 @@ LAWS = {
         *("tests/features", "tests/brep/building/test_sheet.py", "tests/delivery/test_joints.py"),
         *("tests/delivery/test_panel_returns.py", "tests/delivery/test_panel_fixings.py"),
     ),
-    "features": ("tests/terms",),
+    "features": ("tests/terms", "tests/geometry/test_patch_under.py"),
     "terms": ("tests/fitting/test_limits.py", "tests/fitting/methods", "tests/fitting/test_seams_run_true.py"),
     "solver": ("tests/fitting/methods",),
 }

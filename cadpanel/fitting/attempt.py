@@ -123,7 +123,11 @@ class Attempts:
 
     def _result(self, problem: Problem, alone: Array, fitted: Fitted, rules: tuple[Posed, ...] = ()) -> FitResult:
         how = self.settings
-        measures = measure(panel_shapes(problem, fitted.unknowns), self.reference)
+        met = fitted.measured()
+        if met is None:
+            measures = measure(panel_shapes(problem, fitted.unknowns), self.reference)
+        else:
+            measures = measure(met.shapes, self.reference, edges=met.edges, met=met.along)
         outcomes = tuple(rule.outcome(measures) for rule in rules)
         return FitResult(
             reference=self.reference,

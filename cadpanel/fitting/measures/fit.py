@@ -26,7 +26,7 @@ from cadpanel.fitting.measures.deviation import deviations, outline_distances
 from cadpanel.fitting.measures.drift import drifts
 from cadpanel.fitting.measures.edges import PanelEdges
 from cadpanel.fitting.measures.free_outline import outline_drift
-from cadpanel.fitting.measures.seams import along_seams, corner_gaps
+from cadpanel.fitting.measures.seams import AlongSeams, along_seams, corner_gaps
 from cadpanel.fitting.measures.turns import edge_turns, off_level, seam_unevenness
 from cadpanel.fitting.samples import SampleArrays
 from cadpanel.geometry.panel import Panel
@@ -114,13 +114,26 @@ class Measures:
         return float(self.seam_gap.max(initial=0.0))
 
 
-def measure(shapes: Sequence[Panel], reference: Reference) -> Measures:
-    """Measure fitted panels against what they approximate; one shape a panel, in the reference's order."""
+def measure(
+    shapes: Sequence[Panel],
+    reference: Reference,
+    *,
+    edges: PanelEdges | None = None,
+    met: AlongSeams | None = None,
+) -> Measures:
+    """Measure fitted panels against what they approximate; one shape a panel, in the reference's order.
+
+    Args:
+        shapes: the panels.
+        reference: what they approximate.
+        edges: of these shapes, where they are known already.
+        met: what was measured along their seams, likewise.
+    """
     samples = SampleArrays.of(reference)
     distance, weight = deviations(shapes, samples.points), samples.weights
     largest = _largest(shapes, reference, distance, weight)
-    edges = PanelEdges.of(shapes)
-    met = along_seams(edges, reference.seams)
+    edges = PanelEdges.of(shapes) if edges is None else edges
+    met = along_seams(edges, reference.seams) if met is None else met
     drifted = drifts(edges, reference)
     return Measures(
         corner_gaps=corner_gaps(edges, reference.seams),

@@ -11,16 +11,17 @@ from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.methods.holding import (
     MARGIN,
     GapTerm,
+    excess_along,
     gap_terms,
     held_within,
     prices,
-    seam_excess,
     seam_terms,
+    seams_met,
     stopped_as,
     tighten,
 )
 from cadpanel.fitting.methods.kinks import less_kinked
-from cadpanel.fitting.methods.method import Fitted, Method, Progress
+from cadpanel.fitting.methods.method import Fitted, Method, Progress, SeamsMet
 from cadpanel.fitting.methods.restarts import best_of_starts
 from cadpanel.fitting.methods.restoring import restored
 from cadpanel.fitting.methods.weighted import Weighted
@@ -129,7 +130,7 @@ def _hold_seams(
         yielding = [term for name, term in limits if name in names]
         told = np.array([stop is Stop.TOLD for stop in found.stopped])
         lost = open_ & ~told & (found.end.best.firm > _FIRM) & bool(yielding)
-        found = _tightened(problem, model, found, open_ & ~lost, starts[0], settings, progress)
+        found, met = _tightened(problem, model, found, open_ & ~lost, starts[0], settings, progress)
         open_ = lost
         if not lost.any() or Stop.TOLD in found.stopped:
             break
@@ -140,17 +141,18 @@ def _hold_seams(
         again = found.mixed(held(np.where(blocks.each(lost), begin, found.unknowns), lost), lost, blocks)
         found = again if names is _YIELDING[0] else found.mixed(again, _worth_it(found, again), blocks)
     else:
-        found = _tightened(problem, model, found, open_, starts[0], settings, progress)
+        found, met = _tightened(problem, model, found, open_, starts[0], settings, progress)
     if any(isinstance(term, KinkTerm) for term in model.held) and Stop.TOLD not in found.stopped:
         missed = np.array([stop not in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         if missed.any():
             found = less_kinked(problem, model, found, begin, asked, settings, missed)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
     if not found.held:
-        return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found))
+        return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), met=met)
     costs, of_seams = prices(problem, named, found, settings.gaps | settings.allowed)
     steps = iterations + found.iterations
-    return Fitted(found.unknowns, steps, stopped_as(found), prices=costs, seam_prices=tuple(of_seams.tolist()))
+    each = tuple(of_seams.tolist())
+    return Fitted(found.unknowns, steps, stopped_as(found), prices=costs, seam_prices=each, met=met)
 
 
 def _worth_it(found: HeldSolution, again: HeldSolution) -> BoolArray:
@@ -167,14 +169,19 @@ def _tightened(
     local: Array,
     settings: FitSettings,
     progress: Progress | None,
-) -> HeldSolution:
-    """Measure whole seams, tighten those that are too wide, go on; each of some connected components for itself."""
+) -> tuple[HeldSolution, SeamsMet | None]:
+    """Measure whole seams, tighten those that are too wide, go on; each of some connected components for itself.
+
+    And what was measured last.
+    """
+    met: SeamsMet | None = None
     seams = Components.of(model.pattern).seen_by(np.array([seam.panels[0] for seam in problem.met], dtype=np.intp))
     for tightening in range(_TIGHTENINGS + 1):
         held = where & np.array([stop in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         if not held.any():
             break
-        excess = seam_excess(problem, found.unknowns, settings)
+        met = seams_met(problem, found.unknowns)
+        excess = excess_along(problem, met.along, settings)
         widest = np.max([seams.largest(over) for over in excess.values()], axis=0)
         wide = held & ~(widest <= 1.0)
         far = wide & ((tightening == _TIGHTENINGS) | ~(widest < _NEARLY))
@@ -187,7 +194,7 @@ def _tightened(
             model.held, problem.state(found.unknowns), {of: np.where(here, over, 0.0) for of, over in excess.items()}
         )
         found = held_within(problem, model, found.unknowns, local=local, only=wide, after=found, tell=progress)
-    return found
+    return found, met
 
 
 def seams_held(problem: Problem, settings: FitSettings, unknowns: Array) -> list[GapTerm]:

@@ -10,8 +10,8 @@ import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
 from cadpanel.fitting.measures.edges import PanelEdges
-from cadpanel.fitting.measures.seams import along_seams
-from cadpanel.fitting.methods.method import Progress
+from cadpanel.fitting.measures.seams import AlongSeams, along_seams
+from cadpanel.fitting.methods.method import Progress, SeamsMet
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem, SeamTerm
 from cadpanel.fitting.settings import FitSettings
@@ -85,9 +85,20 @@ def gap_terms(problem: Problem, gaps: Mapping[str, float | Array], state: State)
     return terms
 
 
+def seams_met(problem: Problem, unknowns: Array) -> SeamsMet:
+    """Measure along whole seams."""
+    shapes = panel_shapes(problem, unknowns)
+    edges = PanelEdges.of(shapes)
+    return SeamsMet(unknowns, shapes, edges, along_seams(edges, problem.met))
+
+
 def seam_excess(problem: Problem, unknowns: Array, settings: FitSettings) -> dict[str, Array]:
     """(seams,) what is measured along seams, of gaps, their parts and kinks, over what is allowed."""
-    met = along_seams(PanelEdges.of(panel_shapes(problem, unknowns)), problem.met)
+    return excess_along(problem, seams_met(problem, unknowns).along, settings)
+
+
+def excess_along(problem: Problem, met: AlongSeams, settings: FitSettings) -> dict[str, Array]:
+    """The same of what was measured already."""
     measured = {"gap": met.gap, "width": met.width, "step": met.step, "shift": met.shift}
     excess = {what: measured[what] / most for what, most in problem.gaps(settings).items()}
     return excess | {Kink.name: np.degrees(met.kink) / settings.max_kink}

@@ -6,13 +6,35 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from cadpanel.arrays import Array
+from cadpanel.fitting.measures.edges import PanelEdges
+from cadpanel.fitting.measures.seams import AlongSeams
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.geometry.panel import Panel
 from cadpanel.solver.stop import Stop
 
 # Told the step, the largest excess over a tolerance and the RMS deviation in mm; whether to go on.
 Progress = Callable[[int, float, float], bool]
+
+
+@dataclass(frozen=True, slots=True)
+class SeamsMet:
+    """How panels meet at some unknowns: what holds seams measures it, and the result need not measure it again.
+
+    Attributes:
+        unknowns: (panels, size).
+        shapes: the panels there.
+        edges: their edges.
+        along: what was measured along whole seams.
+    """
+
+    unknowns: Array
+    shapes: tuple[Panel, ...]
+    edges: PanelEdges
+    along: AlongSeams
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +50,7 @@ class Fitted:
         prices: by how much the RMS deviation, mm, would fall for one unit more of what is held, by its name; empty
             where nothing is held at its tolerance.
         seam_prices: the same for one mm more of the gap, or of all its parts, at each seam alone; empty likewise.
+        met: how the panels meet at the last unknowns that were measured on the way, if any were.
     """
 
     unknowns: Array
@@ -37,6 +60,12 @@ class Fitted:
     starts: int = 1
     prices: Mapping[str, float] = field(default_factory=dict)
     seam_prices: tuple[float, ...] = ()
+    met: SeamsMet | None = None
+
+    def measured(self) -> SeamsMet | None:
+        """How the panels meet at these very unknowns, where that was measured."""
+        met = self.met
+        return met if met is not None and np.array_equal(met.unknowns, self.unknowns) else None
 
 
 class Method(ABC):

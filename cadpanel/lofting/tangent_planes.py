@@ -39,6 +39,7 @@ _REGION = 0.5
 _GAUSS = 0.5 / np.sqrt(3.0) * np.array([-1.0, 1.0])
 # Places at which the foot of a point is looked for first, and Newton's steps from there.
 _PLACES, _STEPS = 65, 6
+_GRID = np.linspace(0.0, 1.0, _PLACES)
 # Rulings follow each other where they do so on both sides of the middle, at these parts of the length, and are apart by
 # this share of what they are in the mean.
 _BESIDE, _LEAST_GROWTH = (-0.25, 0.25), 0.02
@@ -229,18 +230,18 @@ def _solved(sampled: Sampled, turning: tuple[float, float], spans: int) -> Plane
     own, size = sampled.slopes, sampled.length
     s = np.clip(own, *turning)
     knots = _knots(s, sampled.weights, turning, spans)
-    basis = np.asarray(BSpline.design_matrix(s, knots, _DEGREE).todense())
+    # For so few samples quicker than the sparse matrix of the same numbers, `BSpline.design_matrix`.
+    basis = BSpline(knots, np.eye(len(knots) - _DEGREE - 1), _DEGREE)(s)
     x, y, z = sampled.points.T
     q = sampled.normals[:, 1] / sampled.normals[:, 2]
     d = -(own * x + q * y + z)
     # A distance along z is one square to the plane times 1 / n_z.
     root = np.sqrt(sampled.weights) * sampled.normals[:, 2]
-    rows, right = [], []
-    for place in _GAUSS:
-        at = y + _REGION * size * place
-        rows.append(root[:, None] * np.hstack([basis * (at / size)[:, None], basis]))
-        right.append(root * (d + q * at + (own - s) * x))
-    found = np.linalg.lstsq(np.concatenate(rows), np.concatenate(right), rcond=None)[0].reshape(2, -1)
+    weighed = root[:, None] * basis
+    at = y + _REGION * size * _GAUSS[:, None]
+    rows = np.concatenate([(at / size)[..., None] * weighed, np.broadcast_to(weighed, (2, *weighed.shape))], axis=2)
+    right = root * (d + q * at + (own - s) * x)
+    found = np.linalg.lstsq(rows.reshape(2 * len(s), -1), right.reshape(-1), rcond=None)[0].reshape(2, -1)
     spline = BSpline(knots, np.stack([found[0] / size, found[1]], axis=-1), _DEGREE)
     return PlaneCurve(sampled.origin, sampled.axes, spline, turning, _bend(spline, s, y, size))
 
@@ -250,7 +251,7 @@ def _bend(spline: BSpline, s: Array, y: Array, length: float) -> int:
 
     At every sample, and between them on both sides of the middle of the strip.
     """
-    grid = np.linspace(spline.t[0], spline.t[-1], _PLACES)
+    grid = spline.t[0] + (spline.t[-1] - spline.t[0]) * _GRID
     stations, heights = (
         np.concatenate([s, grid, grid]),
         np.concatenate([y, *(share * length + 0.0 * grid for share in _BESIDE)]),
@@ -271,9 +272,8 @@ def _knots(s: Array, weights: Array, ends: tuple[float, float], spans: int) -> A
     low = np.minimum(place.astype(np.intp), _CELLS - 2)
     # Flat parts stand at the ends and do not turn.
     own = weights * np.clip(np.minimum(place, _CELLS - 1 - place), 0.0, 1.0)
-    area = np.zeros(_CELLS)
-    np.add.at(area, low, own * (low + 1 - place))
-    np.add.at(area, low + 1, own * (place - low))
+    area = np.bincount(low, own * (low + 1 - place), minlength=_CELLS)
+    area += np.bincount(low + 1, own * (place - low), minlength=_CELLS)
     steps = np.full(_CELLS - 1, 1.0 / (_CELLS - 1))
     if area.any():
         steps = 0.5 * (steps + 0.5 * (area[1:] + area[:-1]) / area.sum())

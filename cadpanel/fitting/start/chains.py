@@ -5,7 +5,7 @@ All panels of one feature at once.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,14 @@ from cadpanel.features.walk import walk
 from cadpanel.fitting.start.axes import turning_axes
 from cadpanel.fitting.start.cone_strips import bends_in_cones, cone_strips
 from cadpanel.fitting.start.frames import Frames, Given, reframe
-from cadpanel.fitting.start.segmentation import ambiguous, curved_runs, cut_profile, without_blemishes
+from cadpanel.fitting.start.segmentation import (
+    Profile,
+    ambiguous,
+    best_knots,
+    curved_runs,
+    cut_profile,
+    without_blemishes,
+)
 from cadpanel.geometry.vectors import cross, dot
 from cadpanel.reference.model import PanelReference
 from cadpanel.reference.strip import end_planes
@@ -74,10 +81,9 @@ def start_chains(feature: Feature, given: Given) -> Frames:
     axis = turning_axes(panels, given.samples)
     whole = np.array([panel.corners for panel in panels])
     found: Frames | None = None
-    for way in range(given.ways if ambiguous(feature.curved) else 1):
-        origins, axes, values = _roll(
-            _cut_ends(panels, feature, axis, given.stretches, even=way > 0), panels, feature, length
-        )
+    ways = given.ways if ambiguous(feature.curved) else 1
+    for way, ends in enumerate(_cut_ends(panels, feature, axis, given.stretches, ways)):
+        origins, axes, values = _roll(ends, panels, feature, length)
         if way > 0 and bends_in_cones(feature):
             _lay_cones(feature, given, axis, (origins, axes, values))
         if found is None:
@@ -156,8 +162,9 @@ def _held(feature: Feature, values: Array) -> Array:
 
 
 def _cut_ends(
-    panels: Sequence[PanelReference], feature: Feature, axis: Array, stretches: Array, *, even: bool
-) -> _Ends:
+    panels: Sequence[PanelReference], feature: Feature, axis: Array, stretches: Array, ways: int
+) -> Iterator[_Ends]:
+    """Both ends as their normals turn best, and then with even parts of their curved stretches."""
     lines, normals = _evenly(panels)
     count, _, places, _ = lines.shape
     n = _unit(_off(normals.sum(axis=(1, 2)), axis))
@@ -168,7 +175,15 @@ def _cut_ends(
         turned = without_blemishes(turned)
     lengths = np.linalg.norm(np.diff(lines, axis=2), axis=-1).sum(axis=2)
     held = stretches / lengths[..., None] * (places - 1)
-    profile = cut_profile(turned, feature.curved, even=even, held=held.reshape(-1, 2))
+    best = best_knots(turned, feature.curved)
+    for way in range(ways):
+        profile = cut_profile(turned, feature.curved, even=way > 0, held=held.reshape(-1, 2), best=best)
+        yield _ends_at(profile, feature, lines, normals, lengths)
+
+
+def _ends_at(profile: Profile, feature: Feature, lines: Array, normals: Array, lengths: Array) -> _Ends:
+    """The ends (n, 2, q, 3) of these lengths (n, 2), mm, where they are cut."""
+    count, _, places, _ = lines.shape
     knots = profile.knots.reshape(count, 2, -1)
     sweeps = np.diff(profile.angles.reshape(count, 2, -1).mean(axis=1), axis=1)
     sweeps = np.where(np.abs(sweeps) < _LEAST_SWEEP, np.where(sweeps < 0.0, -1.0, 1.0) * _LEAST_SWEEP, sweeps)

@@ -40,7 +40,14 @@ class Profile:
     angles: Array
 
 
-def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, held: Array | None = None) -> Profile:
+def cut_profile(
+    turned: Array,
+    curved: Sequence[bool],
+    *,
+    even: bool = False,
+    held: Array | None = None,
+    best: IntArray | None = None,
+) -> Profile:
     """Cut walks into patches.
 
     Args:
@@ -49,15 +56,21 @@ def cut_profile(turned: Array, curved: Sequence[bool], *, even: bool = False, he
         even: give curved patches that follow each other equal parts of their stretch, instead of the best.
         held: (n, 2) steps, with fractions, at which the only stretch of curved patches is to begin and end; nan where
             it is to be found.
+        best: (n, k + 1) what `best_knots` found for these walks, where that is known already.
     """
-    # A few walks at a time: all places against all others stay in the processor's cache.
-    parts = [_best_knots(turned[i : i + _CHUNK], curved) for i in range(0, len(turned), _CHUNK)]
-    knots = np.concatenate(parts) if parts else np.empty((0, len(curved) + 1), dtype=np.intp)
+    knots = best_knots(turned, curved) if best is None else best.copy()
     if even:
         _even_out(knots, curved)
     if held is not None and not np.all(np.isnan(held)):
         _hold(knots, curved, held)
     return Profile(knots, _angles(turned, knots, curved))
+
+
+def best_knots(turned: Array, curved: Sequence[bool]) -> IntArray:
+    """(n, k + 1) the steps at which patches begin and end that fit walks (n, q) best."""
+    # A few walks at a time: all places against all others stay in the processor's cache.
+    parts = [_best_knots(turned[i : i + _CHUNK], curved) for i in range(0, len(turned), _CHUNK)]
+    return np.concatenate(parts) if parts else np.empty((0, len(curved) + 1), dtype=np.intp)
 
 
 def without_blemishes(turned: Array) -> Array:

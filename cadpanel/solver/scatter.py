@@ -47,8 +47,3 @@ class Scatter:
             return
         summed: Array = np.asarray(self._gather @ values.reshape(len(self._index), -1))
         target += summed.reshape(target.shape)
-
-
-def scatter_add(target: Array, index: IntArray, values: Array) -> None:
-    """target[index] += values, adding up where an index repeats; `index` is (groups,), `values` (groups, ...)."""
-    Scatter(index, len(target)).add(target, values)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.solver.scatter import scatter_add
+from cadpanel.solver.scatter import Scatter
 
 if TYPE_CHECKING:
     from cadpanel.solver.blocks import Normal
@@ -35,21 +35,36 @@ class Rows:
         """(panels,) cost, booked on the first panel of each group."""
         return booked_cost(self.residual, self.panels, panels)
 
-    def add_to(self, normal: Normal) -> None:
-        """Add J^T r and J^T J."""
-        for panels, jacobian in zip(self.panels, self.jacobians, strict=True):
+    def add_to(self, normal: Normal, into: Into | None = None) -> None:
+        """Add J^T r and J^T J; `into` where it is known already how groups add to blocks."""
+        own = Into.of(self.panels, self.pair, normal) if into is None else into
+        for scatter, jacobian in zip(own.panels, self.jacobians, strict=True):
             transposed = np.swapaxes(jacobian, 1, 2)
-            scatter_add(normal.gradient, panels, (transposed @ self.residual[..., None])[..., 0])
-            scatter_add(normal.diagonal, panels, transposed @ jacobian)
-        if self.pair is not None:
-            scatter_add(normal.coupling, self.pair, np.swapaxes(self.jacobians[0], 1, 2) @ self.jacobians[1])
+            scatter.add(normal.gradient, (transposed @ self.residual[..., None])[..., 0])
+            scatter.add(normal.diagonal, transposed @ jacobian)
+        if own.pair is not None:
+            own.pair.add(normal.coupling, np.swapaxes(self.jacobians[0], 1, 2) @ self.jacobians[1])
 
 
-def add_rows(rows: list[Rows], normal: Normal, panels: int) -> Array:
+@dataclass(frozen=True, slots=True)
+class Into:
+    """How groups add to panels and to pairs of coupled panels, for terms that do so again and again."""
+
+    panels: tuple[Scatter, ...]
+    pair: Scatter | None
+
+    @staticmethod
+    def of(panels: Sequence[IntArray], pair: IntArray | None, normal: Normal) -> Into:
+        """That of groups which see these panels, one or two arrays (groups,), and this pair of them (groups,)."""
+        count, pairs = len(normal.gradient), len(normal.coupling)
+        return Into(tuple(Scatter(index, count) for index in panels), None if pair is None else Scatter(pair, pairs))
+
+
+def add_rows(rows: list[Rows], normal: Normal, panels: int, into: Into | None = None) -> Array:
     """Add all rows to the model; returns the (panels,) cost."""
     cost = np.zeros(panels)
     for group in rows:
-        group.add_to(normal)
+        group.add_to(normal, into)
         cost += group.booked(panels)
     return cost
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.solver.hold import Hold
-from cadpanel.terms.rows import Rows, add_rows, booked_cost
+from cadpanel.terms.rows import Into, Rows, add_rows, booked_cost
 from cadpanel.terms.state import State
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class HeldTerm(ABC):
     blocks: tuple[IntArray, ...]
     pair: IntArray | None
     panels: int
+    _into: Into | None = None
 
     @abstractmethod
     def vectors(self, state: State) -> Array:
@@ -80,4 +81,6 @@ class HeldTerm(ABC):
         """See `Term.add_to`; mostly numbers add nothing, and then their derivatives are not worked out."""
         if self.hold.one_sided and not (self.vectors(state) > 0.0).any():
             return np.zeros(self.panels)
-        return add_rows(self.rows(state), normal, self.panels)
+        if self._into is None:
+            self._into = Into.of(self.blocks, self.pair, normal)
+        return add_rows(self.rows(state), normal, self.panels, self._into)

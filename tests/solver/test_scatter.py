@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.solver.scatter import scatter_add
+from cadpanel.solver.scatter import Scatter
 
 
 @given(index=st.lists(st.integers(0, 4), max_size=12), seed=st.integers(0, 100))
@@ -14,5 +14,5 @@ def test_it_adds_every_group_to_its_block_however_often_a_block_stands(index, se
     found, expected = np.ones((5, 2, 3)), np.ones((5, 2, 3))
     for block, value in zip(index, values, strict=True):
         expected[block] += value
-    scatter_add(found, np.array(index, dtype=np.intp), values)
+    Scatter(np.array(index, dtype=np.intp), len(found)).add(found, values)
     assert found == pytest.approx(expected, abs=1e-12)

@@ -6,7 +6,7 @@ import numpy as np
 
 from cadpanel.arrays import Array, IntArray
 from cadpanel.features.rulings import Walk, once
-from cadpanel.geometry.cone import INNER, Skins
+from cadpanel.geometry.cone import INNER, Skins, skin_rows
 from cadpanel.geometry.patch_under import HalfWay, half_way, patch_under
 
 
@@ -37,23 +37,20 @@ def round_numbers(walked: Walk) -> tuple[Array, Array, Array]:
 
 
 @once
-def skin_numbers(walked: Walk) -> Array:
-    """(panels, k, 11) the patches in numbers: t, n, p of the ruling, radius and half angle (0 of planes)."""
-    rulings, (radius, half_angle, _) = walked.carriers.frames, round_numbers(walked)
-    numbers = np.empty((*rulings.shape[:2], 11))
-    numbers[:, :, :9] = rulings[:, :, 1:].reshape(*rulings.shape[:2], 9)
-    numbers[:, :, 9], numbers[:, :, 10] = radius, half_angle
-    return numbers
+def skins_of(walked: Walk) -> Array:
+    """(17, panels, k) the patches, see `geometry.cone.skin_rows`."""
+    _, t, n, p = walked.carriers.frames.transpose(2, 3, 0, 1)
+    radius, half_angle, _ = round_numbers(walked)
+    return skin_rows(p, t, n, radius, half_angle)
 
 
 def skins_under(walked: Walk, patch: IntArray) -> Skins:
     """The patches (panels, m) of points, each with its point."""
-    numbers, curved = skin_numbers(walked), walked.feature.curved
+    rows, curved = skins_of(walked), walked.feature.curved
     if len(curved) == 1:
-        return Skins.of_rows(np.moveaxis(numbers, 2, 0), curved[0])
-    flat = np.ascontiguousarray(numbers.reshape(-1, 11).T)
-    place = np.arange(len(numbers))[:, None] * len(curved) + patch
-    return Skins.of_rows(np.take(flat, place, axis=1), all(curved) or np.array(curved)[patch])
+        return Skins(rows, curved[0])
+    place = np.arange(0, len(patch) * len(curved), len(curved))[:, None] + patch
+    return Skins(np.take(rows.reshape(len(rows), -1), place, axis=1), all(curved) or np.array(curved)[patch])
 
 
 def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Array]:
@@ -61,8 +58,8 @@ def patch_distance_inner(walked: Walk, x: Array, patch: int) -> tuple[Array, Arr
 
     And the derivative (panels, m, 8) by the patch's eight inner numbers.
     """
-    rows = np.moveaxis(skin_numbers(walked)[:, patch], 1, 0)[:, :, None]
-    distance, inner = Skins.of_rows(rows, walked.feature.curved[patch]).distance_inner(x)
+    skins = Skins(skins_of(walked)[:, :, patch, None], walked.feature.curved[patch])
+    distance, inner = skins.distance_inner(x)
     return distance, np.moveaxis(inner, 0, 2)
 
 

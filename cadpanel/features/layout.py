@@ -87,6 +87,19 @@ class Layout:
             powers[group.panels, : len(feature.free)] = [POWERS[feature.numbers[i].unit] for i in feature.free]
         return powers
 
+    @cached_property
+    def patches(self) -> IntArray:
+        """(panels,) number of patches."""
+        return np.array([len(feature.patches) for feature in self.feature_of], dtype=np.intp)
+
+    @cached_property
+    def curved(self) -> BoolArray:
+        """(panels, K) which patches are cones or cylinders; K at most, no patch is where a panel has fewer."""
+        curved = np.zeros((self.panels, int(self.patches.max())), dtype=bool)
+        for panel, feature in enumerate(self.feature_of):
+            curved[panel, : len(feature.curved)] = feature.curved
+        return curved
+
     def walk(self, unknowns: Array, *, derivatives: bool) -> tuple[Walk, ...]:
         """Walk all panels at the unknowns (panels, size), group by group."""
         return tuple(

@@ -16,7 +16,7 @@ from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.patches import Dimensions
 from cadpanel.features.rulings import PanelFeature, Points, Rulings, Walk, once
 from cadpanel.features.ways import plan_of
-from cadpanel.geometry.frames import cayley, cayley_rates, point_velocity, skew
+from cadpanel.geometry.frames import cayley, cayley_rates, skew, velocity_of
 from cadpanel.geometry.vectors import beside
 
 # Panels differentiated together: what is needed on the way stays in the processor's cache and off the system's memory.
@@ -123,15 +123,16 @@ def end_points(walked: Walk, rulings: Rulings) -> Points:
     position = rulings.p[:, None] + slide[..., None] * rulings.t[:, None]
     if rulings.twist is None:
         return Points(position.reshape(panels, 2 * count, 3), None)
-    moved = np.empty((panels, 2, count, 3, walked.values.shape[1]))
     rates = cut_plane_rates(walked) if carried(walked.feature) else None
+    slopes = []
     for start in range(0, panels, _CHUNK):
         part = slice(start, start + _CHUNK)
-        moved[part] = _moved(walked, rulings, part, m[part], position[part], rate[part])
+        slopes.append(_moved(walked, rulings, part, m[part], position[part], rate[part]))
         if rates is not None:
             dm, ds = rates[0][part], rates[1][part]
             along = (ds[:, :, None] - position[part] @ dm) / rate[part][..., None]
-            moved[part] += rulings.t[part, None, :, :, None] * along[..., None, :]
+            slopes[-1] += rulings.t[part, None, :, :, None] * along[..., None, :]
+    moved = slopes[0] if len(slopes) == 1 else np.concatenate(slopes)
     return Points(position.reshape(panels, 2 * count, 3), moved.reshape(panels, 2 * count, 3, moved.shape[-1]))
 
 
@@ -139,13 +140,15 @@ def _moved(walked: Walk, rulings: Rulings, part: slice, m: Array, position: Arra
     """Derivatives (n, 2, R, 3, N) of the points (n, 2, R, 3) of some panels, but for cuts that move with the anchor."""
     if rulings.twist is None:
         raise ValueError("the panels were walked without derivatives")
-    moved = point_velocity(rulings.twist[part, None], position)
-    along = -(m[:, :, None, None] @ moved)[..., 0, :]
+    # What is slid along t is taken off the few numbers that a velocity is made of, not off those for every unknown.
+    velocity = velocity_of(position)
+    slid = rulings.t[part, None] / rate[..., None]
+    velocity -= slid[..., None] * (m[:, :, None, None] @ velocity)
+    moved = velocity @ rulings.twist[part, None]
     if not carried(walked.feature):
         for end, (place, skew, tilt) in enumerate(walked.feature.cut_numbers.tolist()):
-            along[:, end, :, place] += 1.0
-            along[:, end, :, skew] -= position[:, end, :, 0]
-            along[:, end, :, tilt] -= position[:, end, :, 2]
-    along /= rate[..., None]
-    moved += rulings.t[part, None, :, :, None] * along[..., None, :]
+            own = slid[:, end]
+            moved[:, end, :, :, place] += own
+            moved[:, end, :, :, skew] -= own * position[:, end, :, :1]
+            moved[:, end, :, :, tilt] -= own * position[:, end, :, 2:]
     return moved

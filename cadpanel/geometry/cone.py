@@ -16,6 +16,33 @@ from cadpanel.arrays import Array, BoolArray, IntArray
 
 # The eight numbers that a patch's distance depends on: the twist of its ruling (6), normal radius, half angle.
 INNER = 8
+_TINY = np.finfo(float).tiny
+
+
+# Rows of a table of surfaces: axis and a point on it (of planes a point of theirs), the normal of the ruling, what the
+# axis tilts against; the normal radius r, s cos(g), sin(g), s sin(g) and cos(g).
+_AXIS, _CENTRE, _NORMAL, _TILT = (slice(row, row + 3) for row in (0, 3, 6, 9))
+_RADIUS, _SIGNED_COSINE, _SINE, _SIGNED_SINE, _COSINE = range(12, 17)
+
+
+def skin_rows(p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Array:
+    """A table (17, ...) of planes and cones: what `Skins` asks of each, worked out once for all points over it.
+
+    Args:
+        p: (3, ...) points of the rulings that they are measured at.
+        t: (3, ...) their directions.
+        n: (3, ...) the skin's normals there.
+        radius: (...) normal radii of cones, 0 of planes.
+        half_angle: (...) of cones, 0 of planes.
+    """
+    cosine, sine, sign = np.cos(half_angle), np.sin(half_angle), np.sign(radius)
+    rows = np.empty((17, *radius.shape))
+    rows[_AXIS], rows[_CENTRE] = cosine * t - sine * n, p - radius * n
+    # The axis tilts by da = -(sin(g) t + cos(g) n) with the half angle; da is at right angles to a.
+    rows[_NORMAL], rows[_TILT] = n, sine * t + cosine * n
+    rows[_RADIUS], rows[_SIGNED_COSINE], rows[_SINE] = radius, sign * cosine, sine
+    rows[_SIGNED_SINE], rows[_COSINE] = sign * sine, cosine
+    return rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,34 +50,23 @@ class Skins:
     """Planes and cones that points lie over, one for each point or for several; vectors run along the first axis.
 
     Attributes:
-        t, n, p: (3, ...) the rulings that they are measured at.
-        radius, half_angle: (...) of cones.
+        rows: (17, ...) see `skin_rows`.
         curved: (...) whether it is a cone; True or False for all of them.
     """
 
-    t: Array
-    n: Array
-    p: Array
-    radius: Array
-    half_angle: Array
+    rows: Array
     curved: BoolArray | bool
-
-    @staticmethod
-    def of_rows(rows: Array, curved: BoolArray | bool) -> Skins:
-        """Those with the numbers t, n, p, radius and half angle (11, ...)."""
-        return Skins(rows[:3], rows[3:6], rows[6:9], rows[9], rows[10], curved)
 
     @staticmethod
     def of_panels(p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Skins:
         """A cone for each panel: p, t, n (panels, 3), radius and half angle (panels,)."""
-        t, n, p = (axis.T[:, :, None] for axis in (t, n, p))
-        return Skins(t, n, p, radius[:, None], half_angle[:, None], curved=True)
+        return Skins(skin_rows(p.T, t.T, n.T, radius, half_angle)[:, :, None], curved=True)
 
     def distance(self, x: Array) -> Array:
         """(...) signed distances of points x (3, ...)."""
         if self.curved is True:
-            return self._apart(*self._parts(x)[2:])
-        distance = inner_product(x - self.p, self.n)
+            return self._apart(*self._parts(x)[1:])
+        distance = inner_product(x - self.rows[_CENTRE], self.rows[_NORMAL])
         if self.curved is not False:
             index, cones = self._cones()
             distance.reshape(-1)[index] = cones.distance(_at(x, index))
@@ -58,19 +74,17 @@ class Skins:
 
     def distance_inner(self, x: Array) -> tuple[Array, Array]:
         """The same, and (8, ...) the derivatives by the twist of the ruling, the radius and the half angle."""
-        inner = np.zeros((INNER, *x.shape[1:]))
+        inner, rows = np.zeros((INNER, *x.shape[1:])), self.rows
         if self.curved is True:
-            axis, radial, rho, z = self._parts(x)
-            sign, cosine, sine = np.sign(self.radius), np.cos(self.half_angle), np.sin(self.half_angle)
-            inverse = sign * cosine / np.maximum(rho, np.finfo(float).tiny)
-            normal = inverse * radial - sine * axis
-            # The axis tilts by da = -(sin(g) t + cos(g) n); da is at right angles to a.
-            outward = -inner_product(radial, sine * self.t + cosine * self.n)
-            inner[6] = inner_product(normal, self.n) - 1.0
-            inner[7] = -sign * rho * sine - z * cosine - (inverse * z + sine) * outward
+            radial, rho, z = self._parts(x)
+            inverse = rows[_SIGNED_COSINE] / np.maximum(rho, _TINY)
+            normal = inverse * radial - rows[_SINE] * rows[_AXIS]
+            inner[6] = inner_product(normal, rows[_NORMAL]) - 1.0
+            outward = (inverse * z + rows[_SINE]) * inner_product(radial, rows[_TILT])
+            inner[7] = outward - rows[_SIGNED_SINE] * rho - rows[_COSINE] * z
             return self._apart(rho, z), _by_twist(inner, x, normal)
-        distance = inner_product(x - self.p, self.n)
-        _by_twist(inner, x, self.n)
+        distance = inner_product(x - rows[_CENTRE], rows[_NORMAL])
+        _by_twist(inner, x, rows[_NORMAL])
         if self.curved is not False:
             index, cones = self._cones()
             distance.reshape(-1)[index], inner.reshape(INNER, -1)[:, index] = cones.distance_inner(_at(x, index))
@@ -78,11 +92,11 @@ class Skins:
 
     def normals(self, x: Array) -> Array:
         """(3, ...) unit normals under points x (3, ...), on the side of n."""
+        rows = self.rows
         if self.curved is True:
-            axis, radial, rho, _ = self._parts(x)
-            scale = np.sign(self.radius) * np.cos(self.half_angle) / np.maximum(rho, np.finfo(float).tiny)
-            return np.asarray(scale * radial - np.sin(self.half_angle) * axis)
-        normals = np.broadcast_to(self.n, x.shape).copy()
+            radial, rho, _ = self._parts(x)
+            return np.asarray(rows[_SIGNED_COSINE] / np.maximum(rho, _TINY) * radial - rows[_SINE] * rows[_AXIS])
+        normals = np.broadcast_to(rows[_NORMAL], x.shape).copy()
         if self.curved is not False:
             index, cones = self._cones()
             normals.reshape(3, -1)[:, index] = cones.normals(_at(x, index))
@@ -91,21 +105,18 @@ class Skins:
     def _cones(self) -> tuple[IntArray, Skins]:
         """Which of the surfaces of points, counted one by one, are cones; and these."""
         index = np.flatnonzero(self.curved)
-        t, n, p = (_at(axis, index) for axis in (self.t, self.n, self.p))
-        radius, half_angle = (np.take(numbers, index) for numbers in (self.radius, self.half_angle))
-        return index, Skins(t, n, p, radius, half_angle, curved=True)
+        return index, Skins(_at(self.rows, index), curved=True)
 
-    def _parts(self, x: Array) -> tuple[Array, Array, Array, Array]:
-        """Of cones the axis (3, ...); the way from there square to it (3, ...) and its length; how far along it."""
-        axis = np.cos(self.half_angle) * self.t - np.sin(self.half_angle) * self.n
-        y = x - (self.p - self.radius * self.n)
+    def _parts(self, x: Array) -> tuple[Array, Array, Array]:
+        """Of cones the way from the axis square to it (3, ...), and its length; how far along it."""
+        axis, y = self.rows[_AXIS], x - self.rows[_CENTRE]
         z = inner_product(y, axis)
         radial = y - z * axis
-        return axis, radial, np.sqrt(inner_product(radial, radial)), z
+        return radial, np.sqrt(inner_product(radial, radial)), z
 
     def _apart(self, rho: Array, z: Array) -> Array:
-        away = np.sign(self.radius) * rho * np.cos(self.half_angle) - z * np.sin(self.half_angle)
-        return np.asarray(away - self.radius)
+        rows = self.rows
+        return np.asarray(rows[_SIGNED_COSINE] * rho - rows[_SINE] * z - rows[_RADIUS])
 
 
 def _at(values: Array, index: IntArray) -> Array:
@@ -132,27 +143,9 @@ def plane_distance(x: Array, p: Array, n: Array) -> Array:
     return inner_product(x - p.T[:, :, None], n.T[:, :, None])
 
 
-def plane_inner(x: Array, n: Array) -> Array:
-    """(panels, m, 8) derivative of `plane_distance` by the plane's twist; the last two numbers do not matter."""
-    return np.moveaxis(_by_twist(np.zeros((INNER, *x.shape[1:])), x, n.T[:, :, None]), 0, 2)
-
-
 def cone_distance(x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Array:
     """Signed distance of x (3, panels, m) to cones; p, t, n (panels, 3), radius and half_angle (panels,)."""
     return Skins.of_panels(p, t, n, radius, half_angle).distance(x)
-
-
-def cone_distance_inner(
-    x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array
-) -> tuple[Array, Array]:
-    """As `cone_distance`, and its derivative (panels, m, 8) by the ruling's twist, the radius and the half angle."""
-    distance, inner = Skins.of_panels(p, t, n, radius, half_angle).distance_inner(x)
-    return distance, np.moveaxis(inner, 0, 2)
-
-
-def cone_normal(x: Array, p: Array, t: Array, n: Array, radius: Array, half_angle: Array) -> Array:
-    """(panels, m, 3) unit normals of the cones under x (3, panels, m), on the side of n."""
-    return np.moveaxis(Skins.of_panels(p, t, n, radius, half_angle).normals(x), 0, 2)
 
 
 def beyond(x: Array, p: Array, b: Array) -> BoolArray:

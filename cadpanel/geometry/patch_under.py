@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cadpanel.arrays import Array, IntArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.geometry.cone import beyond
 from cadpanel.geometry.frames import rotate_about
 from cadpanel.geometry.vectors import cross, dot
@@ -40,7 +40,7 @@ def half_way(rulings: tuple[Array, Array, Array], numbers: tuple[Array, Array, A
     radius, half_angle, sweep = numbers
     turned = np.cumsum(np.where(radius != 0.0, np.abs(sweep) + _NO_TURN, 0.0), axis=1)
     half = 0.5 * turned[:, -1:]
-    patch = np.argmax(turned >= half, axis=1)
+    patch = (turned >= half).argmax(axis=1)
     rows = np.arange(len(turned))
     before = np.where(patch > 0, turned[rows, patch - 1], 0.0)
     share = (half[:, 0] - before) / (turned[rows, patch] - before)
@@ -48,7 +48,7 @@ def half_way(rulings: tuple[Array, Array, Array], numbers: tuple[Array, Array, A
     own, narrow = radius[rows, patch, None], half_angle[rows, patch, None]
     axis = np.cos(narrow) * t - np.sin(narrow) * n
     turn = share * sweep[rows, patch]
-    turned_t, turned_n = rotate_about(axis, turn, t), rotate_about(axis, turn, n)
+    turned_t, turned_n = rotate_about(axis, turn, np.array([t, n]))
     return HalfWay(p + own * (turned_n - n), cross(turned_t, turned_n), patch)
 
 
@@ -66,23 +66,40 @@ def patch_under(x: Array, middle: HalfWay, rulings: tuple[Array, Array]) -> IntA
         middle: where the walk begins.
         rulings: points and binormals (panels, k + 1, 3) of the rulings that bound the k patches.
     """
-    p, b = rulings
-    right = beyond(x, middle.p, middle.b)
-    begin = middle.patch[:, None]
-    patch = np.broadcast_to(begin, right.shape).copy()
-    last = p.shape[1] - 1
-    inner = b[:, 1:last]
-    # One row of the middle for each inner ruling; the first ruling is asked of nobody.
-    apart = inner @ np.swapaxes(x, 0, 1) - dot(p[:, 1:last], inner)[..., None]
-    past = [right, *np.moveaxis(apart > 0.0, 1, 0)]
+    (p, b), right = rulings, beyond(x, middle.p, middle.b)
+    # Of each inner ruling whether points are past it.
+    inner = b[:, 1:-1]
+    past = inner @ x.swapaxes(0, 1) > dot(p[:, 1:-1], inner)[..., None]
+    return outwards(right, past, middle.patch)
+
+
+def outwards(right: BoolArray, past: BoolArray, begin: IntArray, count: IntArray | None = None) -> IntArray:
+    """(n, m) the patch of each point, walking outwards from the middle as long as it is past the next ruling.
+
+    Args:
+        right: (n, m) on which side of the middle points lie.
+        past: (n, k - 1, m) whether they are past the rulings between the k patches.
+        begin: (n,) the patch that the middle lies on.
+        count: (n,) number of patches, k if not given.
+    """
+    first, most, rulings = int(begin.min()), int(begin.max()), past.shape[1]
+    patch, begin = np.zeros(right.shape, dtype=np.intp) + begin[:, None], begin[:, None]
     passed = right
-    for i in range(int(middle.patch.min()) + 1, last):
-        asked = i > begin
-        passed = passed & (past[i] | ~asked)
-        patch += passed & asked
+    for i in range(first + 1, rulings + 1):
+        if i > most and count is None:
+            passed = passed & past[:, i - 1]
+            patch += passed
+        else:
+            asked = i > begin if count is None else (i > begin) & (i < count[:, None])
+            passed = passed & (past[:, i - 1] | ~asked)
+            patch += passed & asked
     passed = ~right
-    for i in range(int(middle.patch.max()), 0, -1):
-        asked = i <= begin
-        passed = passed & ~(past[i] & asked)
-        patch -= passed & asked
+    for i in range(most, 0, -1):
+        if i <= first:
+            passed = passed & ~past[:, i - 1]
+            patch -= passed
+        else:
+            asked = i <= begin
+            passed = passed & ~(past[:, i - 1] & asked)
+            patch -= passed & asked
     return patch

@@ -32,7 +32,7 @@ class _Chunk:
     walked: Walk
     samples: Array
     roots: Array
-    panels: IntArray
+    panels: IntArray | slice
     allowed: tuple[IntArray, IntArray] | None
 
     @property
@@ -40,12 +40,18 @@ class _Chunk:
         """(n, k, 8, unknowns) how the inner numbers of the patches follow the unknowns."""
         return self.walked.feature.by_unknowns(patch_outers(self.walked))
 
-    def linear(self) -> tuple[Array, Array, BoolArray]:
-        """Residuals (n, m), how they follow their own patches' numbers (n, 8, m), and whose they are (n, k, m)."""
+    def linear(self) -> tuple[Array, BoolArray]:
+        """How residuals follow their own patches' numbers, and they themselves (n, 8 + 1, m); whose they are (n, k, m).
+
+        As rows of one array: what is summed over the samples then is so in one product of matrices.
+        """
         patch = self.assign()
         distance, inner = skins_under(self.walked, patch).distance_inner(self.samples)
+        rows = np.empty((INNER + 1, *distance.shape))
+        np.multiply(inner, self.roots, out=rows[:INNER])
+        np.multiply(distance, self.roots, out=rows[INNER])
         mine = patch[:, None] == np.arange(len(self.walked.feature.patches))[:, None]
-        return distance * self.roots, np.moveaxis(inner * self.roots, 0, 1), mine
+        return rows.swapaxes(0, 1), mine
 
     def assign(self) -> IntArray:
         """The patch (n, m) of each sample, as near as it is allowed to the one under its foot point."""
@@ -97,32 +103,31 @@ class Deviation:
         """See `Term.add_to`; the chain rule is applied to the summed 8 x 8 moments of each patch, not to every row."""
         cost = np.zeros(len(self.roots))
         for chunk in self._chunks(state):
-            residual, rows, mine = chunk.linear()
-            panels, count = chunk.panels, chunk.outer.shape[3]
-            slope, bend = np.empty(chunk.outer.shape[:3]), np.empty((*chunk.outer.shape[:3], INNER))
-            turned, own = np.swapaxes(rows, 1, 2), np.empty(rows.shape)
-            for i in range(mine.shape[1]):
-                np.multiply(rows, mine[:, i, None], out=own)
-                slope[:, i] = (own @ residual[..., None])[..., 0]
-                bend[:, i] = own @ turned
-            outer = chunk.outer.reshape(len(panels), -1, count)
-            moved = (bend @ chunk.outer).reshape(outer.shape)
-            turned = np.swapaxes(outer, 1, 2)
-            normal.gradient[panels, :count] += (turned @ slope.reshape(len(panels), -1, 1))[..., 0]
+            (rows, mine), each = chunk.linear(), chunk.outer
+            panels, (n, patches, _, count) = chunk.panels, each.shape
+            bend = np.empty((n, patches, INNER, INNER + 1))
+            turned, own = rows.swapaxes(1, 2), np.empty((n, INNER, rows.shape[2]))
+            for i in range(patches):
+                np.multiply(rows[:, :INNER], mine[:, i, None], out=own)
+                np.matmul(own, turned, out=bend[:, i])
+            outer = each.reshape(n, -1, count)
+            moved = (bend[..., :INNER] @ each).reshape(outer.shape)
+            turned = outer.swapaxes(1, 2)
+            normal.gradient[panels, :count] += (turned @ bend[..., INNER].reshape(n, -1, 1))[..., 0]
             normal.diagonal[panels, :count, :count] += turned @ moved
-            cost[panels] = 0.5 * np.einsum("pm,pm->p", residual, residual)
+            cost[panels] = 0.5 * np.einsum("pm,pm->p", rows[:, INNER], rows[:, INNER])
         return cost
 
     def rows(self, state: State) -> list[Rows]:
         """See `Term.rows`."""
         rows = []
         for chunk in self._chunks(state):
-            residual, own, mine = chunk.linear()
-            panels, count = chunk.panels, chunk.outer.shape[3]
+            own, mine = chunk.linear()
+            (panels, _, _, count), residual = chunk.outer.shape, own[:, INNER]
             jacobian = np.zeros((*residual.shape, state.layout.size))
-            by_patch = (own[:, None] * mine[:, :, None]).reshape(len(panels), -1, residual.shape[1])
-            jacobian[..., :count] = np.swapaxes(by_patch, 1, 2) @ chunk.outer.reshape(len(panels), -1, count)
-            rows.append(Rows(residual, (panels,), (jacobian,)))
+            by_patch = (own[:, None, :INNER] * mine[:, :, None]).reshape(panels, -1, residual.shape[1])
+            jacobian[..., :count] = np.swapaxes(by_patch, 1, 2) @ chunk.outer.reshape(panels, -1, count)
+            rows.append(Rows(residual, (np.arange(len(self.roots))[chunk.panels],), (jacobian,)))
         return rows
 
     def _chunks(self, state: State) -> Iterator[_Chunk]:
@@ -130,7 +135,7 @@ class Deviation:
             samples, roots = self._own(state.layout, group)
             for start in range(0, len(group.panels), _CHUNK):
                 part = slice(start, start + _CHUNK)
-                panels = group.panels[part]
+                panels = part if len(state.layout.groups) == 1 else group.panels[part]
                 allowed = None if self.allowed is None else (self.allowed[0][panels], self.allowed[1][panels])
                 yield _Chunk(_part(walked, part), samples[:, part], roots[part], panels, allowed)
 

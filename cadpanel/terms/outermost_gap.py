@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from cadpanel.geometry.vectors import unit
 from cadpanel.terms.corner_gap import CornerGap
 from cadpanel.terms.placement import Placement
 from cadpanel.terms.seams import SeamBatch
-from cadpanel.terms.state import State
+from cadpanel.terms.state import State, slopes
 
 
 class OutermostGap(CornerGap):
@@ -53,3 +54,52 @@ class OutermostGap(CornerGap):
             tangents.append(unit(inwards) @ axes)
             normals.append(state.normals.position[panels[:, None], corners] @ axes)
         return seam_frames(np.sum(tangents, axis=0), np.sum(normals, axis=0))
+
+    def seen(self, state: State, parts: Sequence[int], scale: Array) -> SeenEnds:
+        """Some of the gap's parts.
+
+        Args:
+            state: where seams run.
+            parts: which, see `geometry.seam_frames`.
+            scale: (seams, parts) by which their lengths are multiplied.
+        """
+        frames = scale[:, None, :, None] * self.frames(state)[:, :, list(parts)]
+        (first, second), place = self.seams.blocks, self.place
+        apart = (place.origins[first] - place.origins[second])[:, None, :, None] / place.length
+        return SeenEnds(
+            self.seams,
+            first=frames @ place.axes[first][:, None],
+            second=-(frames @ place.axes[second][:, None]),
+            apart=(frames @ apart)[..., 0],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SeenEnds:
+    """The parts of gaps that are asked for, as seams run in one state.
+
+    Attributes:
+        seams: whose.
+        first, second: (seams, 2, parts, 3) rows that take the parts from the corners of the first panels and of the
+            second ones, in the panels' own frames.
+        apart: (seams, 2, parts) what the frames' origins add.
+    """
+
+    seams: SeamBatch
+    first: Array
+    second: Array
+    apart: Array
+
+    def vectors(self, state: State) -> Array:
+        """(seams, 2, parts)."""
+        first, second = (self._taken(state.corners.position, side)[..., None] for side in (0, 1))
+        return np.asarray(self.apart + (self.first @ first + self.second @ second)[..., 0])
+
+    def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
+        """The same, and how they follow the unknowns; see `HeldTerm.linear`."""
+        rates = slopes(state.corners)
+        return self.vectors(state), (self.first @ self._taken(rates, 0), self.second @ self._taken(rates, 1))
+
+    def _taken(self, values: Array, side: int) -> Array:
+        """(seams, 2, ...) of values (panels, corners, ...)."""
+        return np.asarray(values[self.seams.panels[:, side, None], self.seams.corners[:, side]])

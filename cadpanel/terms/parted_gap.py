@@ -48,22 +48,19 @@ class PartedGap(HeldTerm):
         count = len(gap.seams.index)
         most = np.stack([np.broadcast_to(allowed[part], count) for part in self.parts], axis=1)
         least = most.min(axis=1, keepdims=True)
-        self._scale = (least / most)[:, None, :, None]
+        self._scale = least / most
         self.straighten(state)
         radius = np.broadcast_to(share * least, gap.hold.radius.shape).copy()
         self.hold = Hold(radius, weight=0.0, gives_way=True)
 
     def straighten(self, state: State) -> None:
         """From now on look in the directions of this state."""
-        rows = [PARTS.index(part) for part in self.parts]
-        self._frames = self._scale * self.gap.frames(state)[:, :, rows]
+        self._seen = self.gap.seen(state, [PARTS.index(part) for part in self.parts], self._scale)
 
     def vectors(self, state: State) -> Array:
         """(seams, points, parts), each part over what is allowed of it, times the least of these."""
-        told: Array = (self._frames @ self.gap.vectors(state)[..., None])[..., 0]
-        return told
+        return self._seen.vectors(state)
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""
-        vectors, jacobians = self.gap.linear(state)
-        return (self._frames @ vectors[..., None])[..., 0], tuple(self._frames @ jacobian for jacobian in jacobians)
+        return self._seen.linear(state)

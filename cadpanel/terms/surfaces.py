@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray, IntArray
 from cadpanel.features.cut_planes import unit_cut_plane_rates, unit_cut_planes
-from cadpanel.features.distance import middle, patch_outers, skin_numbers
+from cadpanel.features.distance import middle, patch_outers, skins_of
 from cadpanel.features.layout import Layout
 from cadpanel.features.rulings import Walk
 from cadpanel.geometry.cone import Skins
+from cadpanel.geometry.patch_under import outwards
 from cadpanel.geometry.vectors import dot
 
 
@@ -21,19 +22,19 @@ class Surfaces:
     """Patches of all panels, K at most, each in its panel's frame.
 
     Attributes:
-        numbers: (panels, K, 11) the patches, see `features.distance.skin_numbers`.
+        rows: (17, panels, K) the patches, see `geometry.cone.skin_rows`.
         curved: (panels, K) whether it is a cone or cylinder.
         outer: (panels, K, 8, size) how their inner numbers follow the unknowns, or None without derivatives.
-        count: (panels,) number of patches.
+        count: (panels,) number of patches, None where all have K.
         ruling_p, ruling_b: (panels, K + 1, 3) the bounding rulings; of a polygon its plane, once.
         middle: (panels,) the patch on which the panel has turned half of its way.
         middle_p, middle_b: (panels, 3) the ruling there.
     """
 
-    numbers: Array
+    rows: Array
     curved: BoolArray
     outer: Array | None
-    count: IntArray
+    count: IntArray | None
     middle: IntArray
     ruling_p: Array
     ruling_b: Array
@@ -42,22 +43,10 @@ class Surfaces:
 
     def assign(self, x: Array, panel: IntArray) -> IntArray:
         """(g, q) the patch of each point x (g, q, 3) in the frame of its panel (g,); see `features.distance.assign`."""
-        p, b = self.ruling_p[panel], self.ruling_b[panel]
-        beyond = x @ np.swapaxes(b, 1, 2) > dot(p, b)[:, None]
+        p, b = self.ruling_p[panel, 1:-1], self.ruling_b[panel, 1:-1]
         right = dot(x - self.middle_p[panel][:, None], self.middle_b[panel][:, None]) > 0.0
-        middle, count = self.middle[panel, None], self.count[panel, None]
-        patch = np.broadcast_to(middle, right.shape).copy()
-        passed = right
-        for i in range(1, self.curved.shape[1]):
-            asked = (i > middle) & (i < count)
-            passed = np.where(asked, passed & beyond[..., i], passed)
-            patch += asked & passed
-        passed = ~right
-        for i in range(self.curved.shape[1] - 1, 0, -1):
-            asked = i <= middle
-            passed = np.where(asked, passed & ~beyond[..., i], passed)
-            patch -= asked & passed
-        return patch
+        past = b @ x.swapaxes(1, 2) > dot(p, b)[..., None]
+        return outwards(right, past, self.middle[panel], None if self.count is None else self.count[panel])
 
     def distance(self, x: Array, panel: IntArray, patch: IntArray) -> Array:
         """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,)."""
@@ -68,37 +57,32 @@ class Surfaces:
         distance, inner = self._under(panel, patch).distance_inner(np.moveaxis(x, 2, 0))
         return distance, np.moveaxis(inner, 0, 2)
 
+    def places(self, panel: IntArray, patch: IntArray) -> IntArray:
+        """(g, q) the places of patches (g, q) of panels (g,), counted panel by panel."""
+        return np.asarray(self.rows.shape[2] * panel[:, None] + patch, dtype=np.intp)
+
     def _under(self, panel: IntArray, patch: IntArray) -> Skins:
-        own = panel[:, None]
-        return Skins.of_rows(np.moveaxis(self.numbers[own, patch], 2, 0), self.curved[own, patch])
+        place = self.places(panel, patch)
+        curved = True if self.curved.all() else np.take(self.curved, place)
+        return Skins(np.take(self.rows.reshape(len(self.rows), -1), place, axis=1), curved)
 
 
 def surfaces_of(layout: Layout, walks: Sequence[Walk]) -> Surfaces:
     """The patches of all panels."""
-    parts = [_surfaces(walked) for walked in walks]
-    outers = [part.outer for part in parts if part.outer is not None]
-    merged = {
-        one.name: layout.gather([getattr(part, one.name) for part in parts])
-        for one in fields(Surfaces)
-        if one.name != "outer"
-    }
-    return Surfaces(**merged, outer=layout.gather(outers) if len(outers) == len(parts) else None)
-
-
-def _surfaces(walked: Walk) -> Surfaces:
-    feature, (panels, patches) = walked.feature, walked.carriers.frames.shape[:2]
-    begin = middle(walked)
-    rulings = walked.edges if walked.edges.p.shape[1] else walked.anchor
+    begins = [middle(walked) for walked in walks]
+    rulings = [walked.edges if walked.edges.p.shape[1] else walked.anchor for walked in walks]
+    rows = [np.moveaxis(skins_of(walked), 0, 2) for walked in walks]
+    outers = [walked.feature.by_unknowns(patch_outers(walked)) for walked in walks if walked.carriers.twist is not None]
     return Surfaces(
-        numbers=skin_numbers(walked),
-        curved=np.broadcast_to(np.array(feature.curved), (panels, patches)),
-        outer=None if walked.carriers.twist is None else feature.by_unknowns(patch_outers(walked)),
-        count=np.full(panels, patches),
-        middle=begin.patch,
-        ruling_p=rulings.p,
-        ruling_b=rulings.b,
-        middle_p=begin.p,
-        middle_b=begin.b,
+        rows=np.ascontiguousarray(np.moveaxis(layout.gather(rows), 2, 0)),
+        curved=layout.curved,
+        outer=layout.gather(outers) if len(outers) == len(walks) else None,
+        count=None if len(walks) == 1 else layout.patches,
+        middle=layout.gather([begin.patch for begin in begins]),
+        ruling_p=layout.gather([ruling.p for ruling in rulings]),
+        ruling_b=layout.gather([ruling.b for ruling in rulings]),
+        middle_p=layout.gather([begin.p for begin in begins]),
+        middle_b=layout.gather([begin.b for begin in begins]),
     )
 
 

@@ -11,7 +11,7 @@ from cadpanel.features.cut_planes import cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
 from cadpanel.features.rulings import Rulings
 from cadpanel.features.walk import arc_rulings, end_points
-from cadpanel.geometry.cone import cone_distance, cone_normal, plane_distance
+from cadpanel.geometry.cone import Skins, plane_distance
 from cadpanel.geometry.vectors import cross, dot
 from tests.chains import CHAINS, FEATURES, random_values, rulings_of, slopes
 
@@ -82,8 +82,8 @@ def tangent_faults(walked, edges):
                     apart, normal = plane_distance(x, p, n), n
                 else:
                     radius, half_angle, _ = walked.dimensions[patch].values.T
-                    cone = p, t, n, radius, half_angle
-                    apart, normal = cone_distance(x, *cone), cone_normal(x, *cone)[:, 0]
+                    cone = Skins.of_panels(p, t, n, radius, half_angle)
+                    apart, normal = cone.distance(x), cone.normals(x)[..., 0].T
                 distance = max(distance, np.abs(apart).max())
                 kink = max(kink, np.linalg.norm(cross(normal, edges.n[:, ruling]), axis=-1).max())
     return distance, kink

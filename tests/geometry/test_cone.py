@@ -7,15 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cadpanel.geometry.cone import (
-    INNER,
-    beyond,
-    cone_distance,
-    cone_distance_inner,
-    cone_normal,
-    plane_distance,
-    plane_inner,
-)
+from cadpanel.geometry.cone import INNER, Skins, beyond, cone_distance, plane_distance, skin_rows
 from cadpanel.geometry.frames import point_velocity, rotate_about
 from cadpanel.geometry.vectors import cross, dot
 
@@ -100,10 +92,10 @@ def test_no_point_of_the_surface_is_nearer_than_the_distance_says(seed, radius, 
 def test_the_normal_is_the_gradient_and_has_unit_length(seed, radius, half_angle):
     feet, normals, room, cone = place(seed, radius, half_angle)
     x = columns(feet + (0.3 * room * np.sign(radius))[:, None] * normals)
-    computed = cone_normal(x, *cone)[:, 0]
-    assert computed == pytest.approx(normals, abs=1e-10)
-    _, inner = cone_distance_inner(x, *cone)
-    assert -inner[:, 0, 3:6] == pytest.approx(normals, abs=1e-10)
+    computed = Skins.of_panels(*cone).normals(x)
+    assert computed == pytest.approx(columns(normals), abs=1e-10)
+    _, inner = Skins.of_panels(*cone).distance_inner(x)
+    assert -inner[3:6] == pytest.approx(columns(normals), abs=1e-10)
 
 
 @many
@@ -111,15 +103,15 @@ def test_the_normal_is_the_gradient_and_has_unit_length(seed, radius, half_angle
 def test_derivatives_by_radius_and_half_angle_agree_with_finite_differences(seed, radius, half_angle):
     feet, normals, room, (p, t, n, r, g) = place(seed, radius, half_angle)
     x = columns(feet + (0.3 * room * np.sign(radius))[:, None] * normals)
-    distance, inner = cone_distance_inner(x, p, t, n, r, g)
+    distance, inner = Skins.of_panels(p, t, n, r, g).distance_inner(x)
     assert np.array_equal(distance, cone_distance(x, p, t, n, r, g))
-    assert inner.shape[-1] == INNER
+    assert len(inner) == INNER
     by_radius = (cone_distance(x, p, t, n, r + STEP, g) - cone_distance(x, p, t, n, r - STEP, g)) / (2.0 * STEP)
     by_angle = (cone_distance(x, p, t, n, r, g + STEP) - cone_distance(x, p, t, n, r, g - STEP)) / (2.0 * STEP)
     # The second derivative grows with how near the axis is.
     allowed = DIFFERENCES * (1.0 + 1.0 / room.min())
-    assert inner[..., 6] == pytest.approx(by_radius, abs=allowed)
-    assert inner[..., 7] == pytest.approx(by_angle, abs=allowed)
+    assert inner[6] == pytest.approx(by_radius, abs=allowed)
+    assert inner[7] == pytest.approx(by_angle, abs=allowed)
 
 
 def moved_by(twist, p, *vectors):
@@ -137,17 +129,18 @@ def moved_by(twist, p, *vectors):
 def test_derivatives_by_the_twist_agree_with_finite_differences(seed, radius, half_angle):
     feet, normals, room, (p, t, n, r, g) = place(seed, radius, half_angle)
     x = columns(feet + (0.3 * room * np.sign(radius))[:, None] * normals)
-    _, inner = cone_distance_inner(x, p, t, n, r, g)
-    flat = plane_inner(x, n)
+    _, inner = Skins.of_panels(p, t, n, r, g).distance_inner(x)
+    planes = skin_rows(p.T, t.T, n.T, np.zeros(len(p)), np.zeros(len(p)))[:, :, None]
+    _, flat = Skins(planes, curved=False).distance_inner(x)
     allowed = DIFFERENCES * (1.0 + 1.0 / room.min()) * 30.0
     for j in range(6):
         step = STEP * np.eye(6)[j]
         ahead, behind = moved_by(step, p, t, n), moved_by(-step, p, t, n)
         apart = [cone_distance(x, p_, t_, n_, r, g) for p_, t_, n_ in (ahead, behind)]
         change = (apart[0] - apart[1]) / (2.0 * STEP)
-        assert inner[..., j] == pytest.approx(change, abs=allowed)
+        assert inner[j] == pytest.approx(change, abs=allowed)
         change = (plane_distance(x, ahead[0], ahead[2]) - plane_distance(x, behind[0], behind[2])) / (2.0 * STEP)
-        assert flat[..., j] == pytest.approx(change, abs=allowed)
+        assert flat[j] == pytest.approx(change, abs=allowed)
 
 
 @many
@@ -155,13 +148,13 @@ def test_derivatives_by_the_twist_agree_with_finite_differences(seed, radius, ha
 def test_the_distance_is_smooth_through_half_angle_zero(seed, radius):
     feet, normals, room, (p, t, n, r, zero) = place(seed, radius, 0.0)
     x = columns(feet + (0.3 * room * np.sign(radius))[:, None] * normals)
-    at_zero, inner = cone_distance_inner(x, p, t, n, r, zero)
+    at_zero, inner = Skins.of_panels(p, t, n, r, zero).distance_inner(x)
     for half_angle in SMALL:
         g = np.full_like(r, half_angle)
-        distance, there = cone_distance_inner(x, p, t, n, r, g)
+        distance, there = Skins.of_panels(p, t, n, r, g).distance_inner(x)
         # Second order: what is left after the tangent is a square, down to rounding.
         bound = 50.0 * half_angle**2 / min(1.0, room.min()) + ROUNDING
-        assert distance == pytest.approx(at_zero + half_angle * inner[..., 7], abs=bound)
+        assert distance == pytest.approx(at_zero + half_angle * inner[7], abs=bound)
         assert there == pytest.approx(inner, abs=100.0 * abs(half_angle) / min(1.0, room.min()) + ROUNDING)
 
 

@@ -61,21 +61,22 @@ class EvennessTerm(HeldTerm):
 
     def __init__(self, panels: Panels, limit: Array) -> None:
         """`limit` (s,) in units of the solver's length, of the seams that `panels.across` has."""
-        met, self._place, self._outline = panels.across, panels.place, panels.outline
+        met, self._outline = panels.across, panels.outline
         self.blocks, self.pair = (met.panels[:, 0], met.panels[:, 1]), panels.pair_of[met.index]
         self.panels = len(panels.lengths)
         self._on, self._across = (_places(panels, met, corners) for corners in (met.on, met.across))
-        # Two directions in the skin at each corner.
+        # Two directions in the skin at each corner, for either panel in its own frame.
         drawn = met.normals
         least = np.eye(3)[np.abs(drawn).argmin(axis=2)]
         first = unit(cross(drawn, least))
-        self._skin = np.stack([first, cross(drawn, first)], axis=2)
+        skin = np.stack([first, cross(drawn, first)], axis=2)
+        self._skin = [0.5 * skin @ panels.place.axes[own][:, None] for own in self.blocks]
         self.hold = Hold(np.repeat(limit[:, None], 2, axis=1), weight=0.0, ties=TIES)
 
     def vectors(self, state: State) -> Array:
         """(s, 2, 2) in the skin."""
         drift = self._outline.drift(state)
-        return sum((self._off(drift[..., None], side)[..., 0] for side in (0, 1)), np.zeros(1))
+        return np.asarray((self._off(drift[..., None], 0) + self._off(drift[..., None], 1))[..., 0])
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""
@@ -84,10 +85,8 @@ class EvennessTerm(HeldTerm):
 
     def _off(self, values: Array, side: int) -> Array:
         """(s, 2, 2, columns) one panel's share, of values (panels, corners, 3, columns) that turn with its frame."""
-        own = self.blocks[side]
-        off = 0.5 * (values[own[:, None], self._on[:, side]] - values[own[:, None], self._across[:, side]])
-        skin = self._skin @ self._place.axes[own][:, None]
-        told: Array = skin @ off
+        own = self.blocks[side][:, None]
+        told: Array = self._skin[side] @ (values[own, self._on[:, side]] - values[own, self._across[:, side]])
         return told
 
 

@@ -60,14 +60,14 @@ class WidthTerm(LackTerm):
 
     def __init__(self, group: Group, place: int, panels: int, least: float) -> None:
         """See `LackTerm`; the feature is a chain with a flat patch."""
-        self._flat = [i for i, curved in enumerate(group.feature.curved) if not curved]
-        super().__init__(group, place, panels, least, 2 * len(self._flat))
+        flat = [i for i, curved in enumerate(group.feature.curved) if not curved]
+        self._which = np.repeat(flat, 2)
+        self._places = self._which + np.tile([0, len(group.feature.curved) + 1], len(flat))
+        super().__init__(group, place, panels, least, 2 * len(flat))
 
     def lengths(self, walked: Walk, corners: Points, *, derivatives: bool) -> tuple[Array, Array]:
         """From each first ruling square across to the corner on the next, at both ends of every flat patch."""
-        edges, rulings = walked.edges, walked.edges.p.shape[1]
-        which = np.repeat(self._flat, 2)
-        places = which + np.tile([0, rulings], len(self._flat))
+        edges, which, places = walked.edges, self._which, self._places
         across = corners.position[:, places + 1] - corners.position[:, places]
         b = edges.b[:, which]
         widths = dot(across, b)

@@ -50,6 +50,8 @@ class LackTerm(HeldTerm):
         """See `HeldTerm.linear`."""
         lengths, slopes = self._lengths(state, derivatives=True)
         own = self._group.feature.by_unknowns(slopes)
+        if own.shape[-1] == state.layout.size:
+            return (self._least - lengths)[..., None], (-own[..., None, :],)
         jacobian = np.zeros((*lengths.shape, 1, state.layout.size))
         jacobian[..., 0, : own.shape[-1]] = -own
         return (self._least - lengths)[..., None], (jacobian,)

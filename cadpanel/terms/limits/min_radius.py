@@ -16,8 +16,8 @@ from cadpanel.features.distance import patch_outers, round_numbers
 from cadpanel.features.layout import Group
 from cadpanel.features.patch_checks import greatest_radius
 from cadpanel.features.rulings import PanelFeature, Points, Walk
-from cadpanel.geometry.frames import point_velocity
-from cadpanel.geometry.vectors import beside, dot
+from cadpanel.geometry.frames import velocity_of
+from cadpanel.geometry.vectors import dot
 from cadpanel.terms.limits.chains import chains_of
 from cadpanel.terms.limits.limit import Limit, Panels, Row, Shapes
 from cadpanel.terms.limits.lower_bound import LackTerm
@@ -77,24 +77,32 @@ class RadiusTerm(LackTerm):
     def __init__(self, group: Group, place: int, panels: int, least: float) -> None:
         """See `LackTerm`; the feature has a curved patch."""
         self._curved = [i for i, curved in enumerate(group.feature.curved) if curved]
+        rulings = len(group.feature.curved) + 1
+        self._which = np.add.outer(self._curved, [0, 1, 0, 1]).reshape(-1)
+        self._places = self._which + np.tile([0, 0, rulings, rulings], len(self._curved))
         super().__init__(group, place, panels, least, 4 * len(self._curved))
 
     def lengths(self, walked: Walk, corners: Points, *, derivatives: bool) -> tuple[Array, Array]:
         """The radii at four corners of every curved patch, positive on its own side of the axis."""
-        edges, rulings = walked.edges, walked.edges.frames.shape[1]
-        which = np.add.outer(self._curved, [0, 1, 0, 1]).reshape(-1)
-        places = which + np.tile([0, 0, rulings, rulings], len(self._curved))
-        radius, angle = (np.repeat(one[:, self._curved], 4, axis=1) for one in round_numbers(walked)[:2])
-        sign, widening = np.sign(radius), np.tan(angle)
-        height = dot(corners.position[:, places] - edges.p[:, which], edges.t[:, which])
-        radii = sign * (radius + height * widening)
+        edges, panels = walked.edges, len(walked.values)
+        p, t = edges.p, edges.t
+        radius, angle = (one[:, self._curved] for one in round_numbers(walked)[:2])
+        sign, widening = np.sign(radius)[..., None], np.tan(angle)[..., None]
+        # Each corner's height on its ruling (panels, ends * rulings), and then of the four of every curved patch.
+        ends = corners.position.reshape(panels, 2, -1, 3)
+        height = dot(ends - p[:, None], t[:, None]).reshape(panels, -1)[:, self._places].reshape(*radius.shape, 4)
+        radii = (sign * (radius[..., None] + height * widening)).reshape(panels, -1)
         if not derivatives:
             return radii, np.zeros((*radii.shape, 0))
         if corners.jacobian is None or edges.twist is None:
             raise ValueError("the state was walked without derivatives")
         # The corner lies on the ruling, so turning the ruling does not change its height to first order.
-        moved = corners.jacobian[:, places] - point_velocity(edges.twist[:, which], edges.p[:, which])
-        slope = widening[..., None] * (edges.t[:, which][..., None, :] @ moved)[..., 0, :]
-        inner = beside([np.ones_like(height).reshape(-1), (height * (1.0 + widening**2)).reshape(-1)])
-        by_patch = inner.reshape(len(height), -1, 4, 2) @ patch_outers(walked)[:, self._curved, 6:]
-        return radii, sign[..., None] * (slope + by_patch.reshape(slope.shape))
+        count = walked.values.shape[1]
+        along = (t[:, None, :, None] @ corners.jacobian.reshape(*ends.shape, count))[..., 0, :]
+        along -= ((t[:, :, None] @ velocity_of(p)) @ edges.twist)[:, None, :, 0]
+        risen = along.reshape(panels, -1, count)[:, self._places].reshape(*height.shape, count)
+        slope = (sign * widening)[..., None] * risen
+        by_patch = patch_outers(walked)[:, self._curved, None, 6:]
+        slope += sign[..., None] * by_patch[..., 0, :]
+        slope += (sign * height * (1.0 + widening**2))[..., None] * by_patch[..., 1, :]
+        return radii, slope.reshape(*radii.shape, count)

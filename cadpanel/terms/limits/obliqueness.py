@@ -96,8 +96,10 @@ class ObliquenessTerm(LackTerm):
         parts = [_rise(walked.edges.t, walked.edges.twist if derivatives else None, planes, rates)]
         if self._cones:
             parts.append(self._at_cones(walked, planes, rates))
-        sines, slopes = (np.concatenate([part[which] for part in parts], axis=1) for which in (0, 1))
-        return self._far * sines, self._far[..., None] * slopes
+        sines = self._far * np.concatenate([part[0] for part in parts], axis=1)
+        if not derivatives:
+            return sines, parts[0][1]
+        return sines, self._far[..., None] * np.concatenate([part[1] for part in parts], axis=1)
 
     def _at_cones(self, walked: Walk, planes: Array, rates: Array | None) -> tuple[Array, Array]:
         """C sqrt(e^2 + tan(g)^2) -+ tan(g) of all cones, both of which are 0 or more where the section is an ellipse.

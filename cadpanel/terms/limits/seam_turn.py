@@ -67,6 +67,7 @@ class TurnTerm(HeldTerm):
         )
         self.blocks, self.pair, self.panels = (own[:, 0],), None, len(pieces.lengths)
         self._far = lengths[own]
+        self._found: tuple[int, IntArray] | None = None
         self.hold = Hold(sine * self._far, weight=0.0, ties=TIES)
 
     def vectors(self, state: State) -> Array:
@@ -88,7 +89,10 @@ class TurnTerm(HeldTerm):
         return (self._far * sines)[..., None], (by_piece[:, :, None, :] @ (rates[:, :, 1] - rates[:, :, 0]),)
 
     def _places(self, state: State) -> IntArray:
-        return places(self._pieces.points, state.corners.position.shape[1])
+        corners = state.corners.position.shape[1]
+        if self._found is None or self._found[0] != corners:
+            self._found = corners, places(self._pieces.points, corners)
+        return self._found[1]
 
     def _ends(self, state: State) -> Array:
         """(pieces, 1, 2, 3) in the panels' own frames."""

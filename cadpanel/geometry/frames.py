@@ -19,7 +19,8 @@ _SKEW = np.array(
     [[0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]], dtype=float
 )
 _VELOCITY = np.concatenate([-_SKEW.reshape(3, 3, 3), np.zeros((3, 3, 3))], axis=2).reshape(3, 18)
-_STANDING = np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1)
+_UNIT = np.eye(3)
+_STANDING = np.concatenate([np.zeros((3, 3)), _UNIT], axis=1)
 
 
 def skew(w: Array) -> Array:
@@ -37,13 +38,13 @@ def cayley(w: Array) -> Array:
     h = 0.5 * w
     square = dot(h, h)[..., None, None]
     outer = h[..., :, None] * h[..., None, :]
-    return ((1.0 - square) * np.eye(3) + 2.0 * (outer + skew(h))) / (1.0 + square)
+    return ((1.0 - square) * _UNIT + 2.0 * (outer + skew(h))) / (1.0 + square)
 
 
 def cayley_rates(w: Array) -> Array:
     """(..., 3, 3) whose column j is the angular velocity omega of cayley(w) when w[j] grows at unit rate."""
     h = 0.5 * w
-    rates: Array = (np.eye(3) + skew(h)) / (1.0 + dot(h, h))[..., None, None]
+    rates: Array = (_UNIT + skew(h)) / (1.0 + dot(h, h))[..., None, None]
     return rates
 
 

@@ -107,7 +107,7 @@ class ArcGap(HeldTerm):
         """Distances (2 seams, q, 2), the points (2 seams, q, 3) in the other panels' frames, the cones' inner rates."""
         of = self._points
         points = of.carrying.points(state.arcs.position[of.own[:, None], of.places])
-        from_cone, inner = state.surfaces.distance_inner(points, of.other, of.patch)
+        from_cone, inner = state.surfaces.distance_inner(points, of.other, of.patch, cones=True)
         m, s = state.cuts.m[of.other, of.end], state.cuts.s[of.other, of.end]
         from_cut = dot(points, m[:, None]) - s[:, None]
         return np.stack([from_cone, from_cut], axis=-1), points, inner
@@ -122,7 +122,8 @@ class ArcGap(HeldTerm):
         # How the distances follow the point itself: the cone's normal, and the cut plane's.
         gradients = np.stack([-inner[..., 3:6], np.broadcast_to(m[:, None], points.shape)], axis=2)
         by_own = of.carrying.slopes(gradients, slopes(state.arcs)[of.own[:, None], of.places])
-        by_cone = (inner[..., None, :] @ outer[of.other[:, None], of.patch])[..., 0, :]
+        places = state.surfaces.places(of.other, of.patch)
+        by_cone = (inner[..., None, :] @ np.take(outer.reshape(-1, *outer.shape[2:]), places, axis=0))[..., 0, :]
         by_cut = points @ dm[of.other, of.end] - ds[of.other, of.end][:, None]
         return distances, by_own, np.stack([by_cone, by_cut], axis=2)
 

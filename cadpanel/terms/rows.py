@@ -77,7 +77,8 @@ def booked_cost(residual: Array, panels: Sequence[IntArray], count: int) -> Arra
         panels: one or two index arrays (groups,).
         count: number of panels.
     """
-    share = 0.5 / len(panels) * np.sum(residual**2, axis=tuple(range(1, residual.ndim)))
+    flat = residual.reshape(len(residual), -1)
+    share = 0.5 / len(panels) * np.einsum("gq,gq->g", flat, flat)
     cost = np.zeros(count)
     for index in panels:
         cost += np.bincount(index, share, minlength=count)

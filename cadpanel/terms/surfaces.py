@@ -52,18 +52,18 @@ class Surfaces:
         """Signed distance (g, q) of points x (g, q, 3) to patches (g, q) of panels (g,)."""
         return self._under(panel, patch).distance(np.moveaxis(x, 2, 0))
 
-    def distance_inner(self, x: Array, panel: IntArray, patch: IntArray) -> tuple[Array, Array]:
-        """The same, and its inner derivative (g, q, 8)."""
-        distance, inner = self._under(panel, patch).distance_inner(np.moveaxis(x, 2, 0))
+    def distance_inner(self, x: Array, panel: IntArray, patch: IntArray, *, cones: bool = False) -> tuple[Array, Array]:
+        """The same, and its inner derivative (g, q, 8); `cones` where it is known that all these patches are."""
+        distance, inner = self._under(panel, patch, cones=cones).distance_inner(np.moveaxis(x, 2, 0))
         return distance, np.moveaxis(inner, 0, 2)
 
     def places(self, panel: IntArray, patch: IntArray) -> IntArray:
         """(g, q) the places of patches (g, q) of panels (g,), counted panel by panel."""
         return np.asarray(self.rows.shape[2] * panel[:, None] + patch, dtype=np.intp)
 
-    def _under(self, panel: IntArray, patch: IntArray) -> Skins:
+    def _under(self, panel: IntArray, patch: IntArray, *, cones: bool = False) -> Skins:
         place = self.places(panel, patch)
-        curved = True if self.curved.all() else np.take(self.curved, place)
+        curved = True if cones or self.curved.all() else np.take(self.curved, place)
         return Skins(np.take(self.rows.reshape(len(self.rows), -1), place, axis=1), curved)
 
 

@@ -102,18 +102,21 @@ class DriftTerm(HeldTerm):
         """`limit` (panels,) in units of the solver's length."""
         self.outline = outline
         self.limited = outline.across if across else outline.along
-        self._rows = np.arange(len(limit))[:, None]
-        held = self.limited.corners.shape[1]
+        corners = self.limited.corners
+        held = corners.shape[1]
+        # Where it is all corners in their order, none need be picked out.
+        whole = bool((corners == np.arange(held)).all())
+        self._picked = (slice(None), slice(held)) if whole else (np.arange(len(limit))[:, None], corners)
         self.blocks, self.pair, self.panels = (np.arange(len(limit)),), None, len(limit)
         self.hold = Hold(np.repeat(limit[:, None], held, axis=1), weight=LEAST_PULL, ties=TIES)
 
     def vectors(self, state: State) -> Array:
         """(panels, L, d) the part of the corners' drift that is limited."""
-        drift = self.outline.drift(state)[self._rows, self.limited.corners]
+        drift = self.outline.drift(state)[self._picked]
         part: Array = (self.limited.part @ drift[..., None])[..., 0]
         return part
 
     def linear(self, state: State) -> tuple[Array, tuple[Array, ...]]:
         """See `HeldTerm.linear`."""
-        moved = slopes(state.corners)[self._rows, self.limited.corners]
+        moved = slopes(state.corners)[self._picked]
         return self.vectors(state), (self.limited.part @ moved,)

@@ -230,8 +230,9 @@ def _solved(sampled: Sampled, turning: tuple[float, float], spans: int) -> Plane
     own, size = sampled.slopes, sampled.length
     s = np.clip(own, *turning)
     knots = _knots(s, sampled.weights, turning, spans)
-    # For so few samples quicker than the sparse matrix of the same numbers, `BSpline.design_matrix`.
-    basis = BSpline(knots, np.eye(len(knots) - _DEGREE - 1), _DEGREE)(s)
+    # For so few samples quicker than the sparse matrix of the same numbers, `BSpline.design_matrix`. The knots need no
+    # looking at: they were made here.
+    basis = BSpline.construct_fast(knots, np.eye(len(knots) - _DEGREE - 1), _DEGREE)(s)
     x, y, z = sampled.points.T
     q = sampled.normals[:, 1] / sampled.normals[:, 2]
     d = -(own * x + q * y + z)
@@ -242,7 +243,7 @@ def _solved(sampled: Sampled, turning: tuple[float, float], spans: int) -> Plane
     rows = np.concatenate([(at / size)[..., None] * weighed, np.broadcast_to(weighed, (2, *weighed.shape))], axis=2)
     right = root * (d + q * at + (own - s) * x)
     found = np.linalg.lstsq(rows.reshape(2 * len(s), -1), right.reshape(-1), rcond=None)[0].reshape(2, -1)
-    spline = BSpline(knots, np.stack([found[0] / size, found[1]], axis=-1), _DEGREE)
+    spline = BSpline.construct_fast(knots, np.stack([found[0] / size, found[1]], axis=-1), _DEGREE)
     return PlaneCurve(sampled.origin, sampled.axes, spline, turning, _bend(spline, s, y, size))
 
 

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from cadpanel.arrays import Array, IntArray
+from cadpanel.arrays import Array, BoolArray, IntArray
 
 # No patch is shorter than so many steps, unless there are too many patches for that.
 SHORTEST = 2
@@ -149,23 +150,47 @@ def ambiguous(curved: Sequence[bool]) -> bool:
 
 def _costs(turned: Array, curved: bool, least: int) -> Array:
     """(n, q, q) sums of squares about the mean or the best line of the places j to k; infinite where too short."""
-    count, places = turned.shape
-    x = np.linspace(-1.0, 1.0, places)
-
-    def sums(values: Array) -> Array:
-        total = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values, axis=1)], axis=1)
-        return np.asarray(total[:, None, 1:] - total[:, :-1, None])
-
-    number = sums(np.ones((1, places)))
-    sy, syy = sums(turned), sums(turned**2)
-    allowed = (np.arange(places)[None, :] - np.arange(places)[:, None] >= least)[None]
-    number = np.where(allowed, number, 1.0)
-    cost = syy - sy**2 / number
+    of = _stretches(turned.shape[1], least)
+    sy = _sums(turned)
+    cost = _sums(turned**2) - sy**2 / of.number
     if curved:
-        sx, sxx, sxy = sums(x[None]), sums(x[None] ** 2), sums(x * turned)
-        spread = np.where(allowed, sxx - sx**2 / number, 1.0)
-        cost = cost - (sxy - sx * sy / number) ** 2 / spread
-    return np.where(np.broadcast_to(allowed, (count, places, places)), np.maximum(cost, 0.0), np.inf)
+        cost -= (_sums(of.x * turned) - of.mean * sy) ** 2 / of.spread
+    return np.where(of.allowed, np.maximum(cost, 0.0), np.inf)
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretches:
+    """What all walks of q places have in common, (1, q, q) of the places j to k.
+
+    Attributes:
+        x: (q,) where the places are.
+        allowed: whether a patch may be so short.
+        number: how many places, 1 where it may not.
+        mean: of x.
+        spread: sum of squares of x about its mean, 1 where a patch may not be so short.
+    """
+
+    x: Array
+    allowed: BoolArray
+    number: Array
+    mean: Array
+    spread: Array
+
+
+@lru_cache
+def _stretches(places: int, least: int) -> _Stretches:
+    x, one = np.linspace(-1.0, 1.0, places), np.ones((1, places))
+    allowed = (np.arange(places)[None, :] - np.arange(places)[:, None] >= least)[None]
+    number, sx = np.where(allowed, _sums(one), 1.0), _sums(x[None])
+    spread = np.where(allowed, _sums(x[None] ** 2) - sx**2 / number, 1.0)
+    return _Stretches(x, allowed, number, sx / number, spread)
+
+
+def _sums(values: Array) -> Array:
+    """(n, q, q) sums of values (n, q) from the place j to k."""
+    total = np.zeros((len(values), values.shape[1] + 1))
+    np.cumsum(values, axis=1, out=total[:, 1:])
+    return np.asarray(total[:, None, 1:] - total[:, :-1, None])
 
 
 def _angles(turned: Array, knots: IntArray, curved: Sequence[bool]) -> Array:

@@ -7,9 +7,12 @@ cuts are "square" it is so in the frame of the anchor ruling, and moves with it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 
-from cadpanel.arrays import Array
+from cadpanel.arrays import Array, IntArray
 from cadpanel.features.carrying import POINT, carry, moves_over
 from cadpanel.features.cut_planes import carried, cut_plane_rates, cut_planes
 from cadpanel.features.panel_edges import ARC_SHARES
@@ -80,30 +83,53 @@ def _anchor_twist(values: Array, count: int) -> Array:
     return twist
 
 
+@dataclass(frozen=True, slots=True)
+class _Arcs:
+    """Where the curved patches of a chain are.
+
+    Attributes:
+        patches: which they are.
+        carriers: the same for arrays; where they follow each other nothing has to be copied.
+        ways: (curved, shares) over which share of each patch its arc points lie, see `ways.Ways`.
+    """
+
+    patches: tuple[int, ...]
+    carriers: IntArray | slice
+    ways: Array
+
+
+@lru_cache
+def _arcs_of(anchor: int, curved: tuple[bool, ...]) -> _Arcs:
+    patches = tuple(i for i, bent in enumerate(curved) if bent)
+    # Their shares begin at a patch's first ruling, ways at the one that its radius is measured at.
+    begin = np.array([-0.5 if i == anchor else -1.0 if i < anchor else 0.0 for i in patches])
+    carriers: IntArray | slice = np.array(patches, dtype=np.intp)
+    if patches and patches[-1] - patches[0] == len(patches) - 1:
+        carriers = slice(patches[0], patches[-1] + 1)
+    return _Arcs(patches, carriers, begin[:, None] + np.array(ARC_SHARES))
+
+
 @once
 def arc_rulings(walked: Walk) -> Rulings:
     """The rulings inside the curved patches at ARC_SHARES of their sweep, patch by patch.
 
     All of them in one go; only seams ask for them.
     """
-    feature, anchor = walked.feature, walked.feature.anchor
-    curved = [i for i, bent in enumerate(feature.curved) if bent]
-    if not curved:
+    feature = walked.feature
+    arcs = _arcs_of(feature.anchor, feature.curved)
+    if not arcs.patches:
         return walked.edges.at(slice(0))
-    # Their shares begin at a patch's first ruling, ways at the one that its radius is measured at.
-    begin = np.array([-0.5 if i == anchor else -1.0 if i < anchor else 0.0 for i in curved])
-    ways = begin[:, None] + np.array(ARC_SHARES)
-    sizes = beside([walked.dimensions[i].values for i in curved])
-    carriers = walked.carriers.at(np.array(curved))
+    sizes = beside([walked.dimensions[i].values for i in arcs.patches])
+    carriers = walked.carriers.at(arcs.carriers)
     starts = carriers.frames[:, :, None]
     moves = moves_over(
-        "cone", sizes[:, :, None] + np.zeros((len(ARC_SHARES), 1)), ways, derivatives=carriers.twist is not None
+        "cone", sizes[:, :, None] + np.zeros((len(ARC_SHARES), 1)), arcs.ways, derivatives=carriers.twist is not None
     )
     frames = carry(moves.frames, starts).reshape(len(starts), -1, 4, 3)
     if carriers.twist is None:
         return Rulings(frames, None)
     own, twist = moves.twists(starts), np.repeat(carriers.twist[:, :, None], len(ARC_SHARES), axis=2)
-    for place, patch in enumerate(curved):
+    for place, patch in enumerate(arcs.patches):
         rates = walked.dimensions[patch].rates
         turned = own[:, place] if rates is None else own[:, place] @ rates[:, None]
         twist[:, place, :, :, feature.patch_slice(patch)] += turned

@@ -18,6 +18,7 @@ from cadpanel.fitting.start.frames import Frames, Given
 from cadpanel.fitting.start.polygons import start_polygons
 from cadpanel.fitting.start.segmentation import ambiguous
 from cadpanel.reference.model import Reference
+from cadpanel.solver.one_thread import on_one_thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +39,7 @@ class Start:
     length: float
 
 
+@on_one_thread
 def start(
     reference: Reference, layout: Layout, samples: SampleArrays, length: float, stretches: Array | None = None
 ) -> Start:

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from cadpanel.fitting.measures.fit import measure
 from cadpanel.fitting.measures.seams import along_seams
 from cadpanel.fitting.methods import local
 from cadpanel.fitting.methods.concurrent import Concurrent
@@ -248,6 +249,25 @@ def test_curves_that_part_between_the_points_that_are_held_are_no_tolerance_held
     problem, starts = posed(lip(2), how)
     found = Concurrent().fit(problem, [fit_local(problem, lip(2), starts).unknowns], how)
     assert found.stopped is Stop.OPEN_BETWEEN
+
+
+def test_what_was_measured_on_the_way_is_not_measured_again_and_is_the_same(monkeypatch):
+    again = []
+    monkeypatch.setattr("cadpanel.fitting.measures.fit.along_seams", lambda *given: again.append(given))
+    found = fit(lip(3), FitSettings(gap_tolerance=2.0))
+    assert not again
+    monkeypatch.undo()
+    anew = measure(found.shapes, found.reference)
+    for what in ("seam_gap", "seam_width", "seam_step", "seam_shift", "kink", "hausdorff", "drift_along"):
+        assert np.array_equal(getattr(found.measures, what), getattr(anew, what))
+
+
+def test_what_was_measured_elsewhere_does_not_count():
+    how = FitSettings()
+    problem, starts = posed(lip(2), how)
+    found = Concurrent().fit(problem, [fit_local(problem, lip(2), starts).unknowns], how)
+    assert found.measured() is not None
+    assert replace(found, unknowns=found.unknowns + 1e-9).measured() is None
 
 
 @every_method

@@ -45,6 +45,8 @@ _GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
+# The barrier falls where nothing exceeds its distance by more than this factor.
+_NEAR = 1.5
 # What exceeds its distances by as much as this share of what it did has made no headway.
 _NEARER = 0.95
 # Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless
@@ -119,6 +121,8 @@ class _Run:
         self.giving = np.flatnonzero(self.held.gives_way)
         self.of_giving = self.of.seen_by(self.giving)
         self.vectors_held = np.bincount(self.of.label, minlength=count).astype(np.float64)
+        giving = np.bincount(self.of_giving.label, minlength=count)
+        self.sharing = np.maximum(np.where(giving > 0, giving, self.vectors_held), 1.0)
         self.growth, self.lag = np.full(count, FIRST_GROWTH), np.full(count, _LAG)
         self.anew, self.waited = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
         self.since, self.nearest = np.zeros(count, dtype=np.intp), np.full((2, count), np.inf)
@@ -137,10 +141,9 @@ class _Run:
         # A start that costs nothing says nothing of what holding the vectors will cost: a part of their squares does.
         goal, long = Barriers(held, most=1.0, ease=ease).goal, np.sqrt(at.squares)
         beyond = self.of.total(np.maximum(long - goal, 0.0) ** 2)
-        giving = np.bincount(self.of_giving.label, minlength=count)
         self.widest = self.of_giving.largest(long[self.giving])
         scale = np.maximum.reduce([self.merit.free_cost(self.place), _OPEN * beyond, self.least, np.full(count, _TINY)])
-        self.mu = _BARRIER * scale / np.maximum(np.where(giving > 0, giving, self.vectors_held), 1.0)
+        self.mu = _BARRIER * scale / self.sharing
         mu = self.mu[self.of.label]
         self.barriers = Barriers(held, most=_ELASTIC * mu, ease=ease)
         self.barriers.open(at, self.widest[self.of.label], self.lag[self.of.label], mu)
@@ -271,7 +274,12 @@ class _Run:
         rest = np.maximum.reduce([_SHARE_LEFT * cost, self.least, np.full_like(cost, _TINY)])
         held = np.maximum(self.now.firm, self.now.excess) <= 1.0 + self.limits.feasibility
         done = through & (self.mu <= end) & held & (promised <= rest)
-        self.mu = np.where(through & ~done, np.maximum(self.mu * _BARRIER_DROP, 0.5 * end), self.mu)
+        # What is far from holding needs greater multipliers first: with a barrier that is lowered before, steps creep
+        # along what holds already. What these multipliers are worth is told by the cost that they have led to.
+        near = np.maximum(self.now.firm, self.now.excess) <= _NEAR
+        falls = np.maximum(self.mu * _BARRIER_DROP, 0.5 * end)
+        rises = np.maximum(self.mu, _BARRIER * cost / self.sharing)
+        self.mu = np.where(through & ~done, np.where(near, falls, rises), self.mu)
         self.settled, self.goes_on = self.settled | done, self.goes_on & ~done
         # What must hold comes first: narrowed while it does not, the others would drive it further off. It may never.
         waits = (

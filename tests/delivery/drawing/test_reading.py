@@ -18,7 +18,10 @@ DRAWING: tuple[Entity, ...] = (
     Line("\u7a97", np.array([20.0, 0.0]), np.array([20.0, 10.0])),
     Text("INFO", "A1, K-factor 0.5 \u00d8", np.array([5.0, 5.0]), 4.0, angle=0.3),
 )
-BEGIN = b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n  9\r\n$ACADVER\r\n  1\r\nAC1015\r\n  0\r\nENDSEC\r\n  0\r\nSECTION\r\n  2\r\nENTITIES\r\n"
+BEGIN = (
+    b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n  9\r\n$ACADVER\r\n  1\r\nAC1015\r\n  0\r\nENDSEC\r\n"
+    b"  0\r\nSECTION\r\n  2\r\nENTITIES\r\n"
+)
 END = b"  0\r\nPOINT\r\n  8\r\n0\r\n  0\r\nENDSEC\r\n"
 both_ways = pytest.mark.parametrize("entities", ["polyline", "lines"])
 
@@ -71,19 +74,19 @@ def test_another_word_number_or_code_shows_and_another_handle_does_not(before, a
 
 
 @pytest.mark.parametrize(
-    ("before", "after"),
+    ("before", "after", "says"),
     [
-        (b"  0\r\nLWPOLYLINE", b"  0\r\nLWPOLYLINE\r\n"),
-        (b" 20\r\n", b" 20\r\nno number"),
-        (b" 70\r\n1", b" 70\r\none"),
-        (b" 40\r\n3.0\r\n", b""),
-        (b"  0\r\nLWPOLYLINE", b"  8\r\nLWPOLYLINE"),
-        (b"  8\r\nINFO", b" -8\r\nINFO"),
-        (b"  8\r\nINFO", b"1072\r\nINFO"),
+        (b"  0\r\nLWPOLYLINE", b"  0\r\nLWPOLYLINE\r\n", "not whole"),
+        (b" 20\r\n", b" 20\r\nno number", "no number"),
+        (b" 70\r\n1", b" 70\r\none", "one"),
+        (b" 40\r\n3.0\r\n", b"", "CIRCLE of it has no code 40"),
+        (b"  0\r\nLWPOLYLINE", b"  8\r\nLWPOLYLINE", "codes that are none"),
+        (b"  8\r\nINFO", b" -8\r\nINFO", "codes that are none"),
+        (b"  8\r\nINFO", b"1072\r\nINFO", "codes that are none"),
     ],
 )
-def test_what_is_no_drawing_is_refused(before, after):
+def test_what_is_no_drawing_is_refused(before, after, says):
     text = written()
     assert before in text
-    with pytest.raises(ValueError, match="."):
+    with pytest.raises(ValueError, match=says):
         drawn_in(text.replace(before, after, 1))

@@ -22,6 +22,7 @@ from cadpanel.delivery.drawing.redrawn import digest_of, drawings_of, holds
 from cadpanel.delivery.records.flat_parts import ALL, FlatPart
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError
+from cadpanel.garbage import garbage_left
 from cadpanel.geometry.biarcs import arc_contour_area, off_arcs
 
 _ENDING = ".dxf"
@@ -40,9 +41,10 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     written = dict(contents.drawn)
     contents.drawn.clear()
     whole = folder / f"{ALL}{_ENDING}"
-    errors, contours = _audited(whole, contents.shop)
-    frame, text = _split(whole)
-    together, place, elsewhere = _read(whole, text), 0, list[str]()
+    with garbage_left():
+        errors, contours = _audited(whole, contents.shop)
+        frame, text = _split(whole)
+        together, place, elsewhere = _read(whole, text), 0, list[str]()
     failures = [f"'{whole.name}': ezdxf finds {error}." for error in errors]
     if len(contours) != len(contents.parts):
         failures.append(f"'{whole.name}' holds {len(contours)} contours, expected {len(contents.parts)}.")

@@ -30,8 +30,8 @@ class Contents:
             reports from before there were joints.
         origin: what has to be added to local coordinates to have the model's, mm.
         summary: what the whole fit is judged by; None where no file tells of it.
-        drawn: the drawings (see `drawing.entities`) that were made of all this, by their names, from when they are
-            written until they are proved; `dataclasses.replace` forgets them.
+        drawn: of the drawings that were made of all this, by their names, the digest of each file as it was to be
+            written, until they are proved; `dataclasses.replace` forgets them.
     """
 
     title: str
@@ -44,7 +44,7 @@ class Contents:
     joint: float | None = 0.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     summary: SummaryModel | None = None
-    drawn: dict[str, object] = field(init=False, default_factory=dict, repr=False, compare=False)
+    drawn: dict[str, str] = field(init=False, default_factory=dict, repr=False, compare=False)
 
     @property
     def placed(self) -> tuple[float, float, float]:

@@ -126,9 +126,9 @@ def _off_arc(end: Array, chord: Array, angle: Array, way: Array, points: Array, 
     `angle` (c,) is that from the way to the chord, half of what the arc sweeps; mirrored, it is told from its end.
     """
     curvature = (2.0 * np.sin(angle) / np.linalg.norm(chord, axis=-1))[:, None] * (-1.0 if mirrored else 1.0)
-    to = points - end[:, None]
-    height = side_of(np.zeros(2), np.broadcast_to(way[:, None], to.shape), to)
-    square = (to**2).sum(axis=-1)
+    # Coordinate by coordinate: where two numbers lie side by side, NumPy takes three times as long.
+    x, y = points[..., 0] - end[:, :1], points[..., 1] - end[:, 1:]
+    height, square = way[:, :1] * y - way[:, 1:] * x, x**2 + y**2
     inside = 1.0 - 2.0 * curvature * height + curvature**2 * square
     return np.asarray(np.abs(2.0 * height - curvature * square) / (1.0 + np.sqrt(np.maximum(inside, 0.0))))
 
@@ -153,12 +153,12 @@ def off_arcs(vertices: Array, points: Array) -> Array:
     cosine, sine = np.cos(half)[:, None], np.sin(half)[:, None]
     across = np.stack([-chord[:, 1], chord[:, 0]], axis=-1)
     leaving, arriving = unit(cosine * chord - sine * across), unit(cosine * chord + sine * across)
-    places = points[None]
-    on_circle = _off_arc(start, chord, half, leaving, np.broadcast_to(places, (len(start), *points.shape)))
-    before = ((places - start[:, None]) * leaving[:, None]).sum(axis=-1) < 0.0
-    beyond = ((places - stop[:, None]) * arriving[:, None]).sum(axis=-1) > 0.0
-    ends = [np.linalg.norm(places - end[:, None], axis=-1) for end in (start, stop)]
-    return np.asarray(np.where(before, ends[0], np.where(beyond, ends[1], on_circle)).min(axis=0))
+    on_circle = _off_arc(start, chord, half, leaving, np.broadcast_to(points, (len(start), *points.shape)))
+    (x, y), (to_x, to_y) = ((points[:, 0] - end[:, :1], points[:, 1] - end[:, 1:]) for end in (start, stop))
+    before = x * leaving[:, :1] + y * leaving[:, 1:] < 0.0
+    beyond = to_x * arriving[:, :1] + to_y * arriving[:, 1:] > 0.0
+    from_end = np.sqrt(np.where(before, x**2 + y**2, to_x**2 + to_y**2))
+    return np.asarray(np.where(before | beyond, from_end, on_circle).min(axis=0))
 
 
 def arc_circle(start: Array, stop: Array, bulge: float) -> tuple[Array, float]:

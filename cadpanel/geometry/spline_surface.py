@@ -71,14 +71,21 @@ class SplineSurfaces:
             u: (k, n) parameters along u of each grid.
             v: (k, m) the same along v.
         """
-        result = np.empty((*u.shape, v.shape[1], 3, 3))
+        return self._on_grids(owners, u, v, 0)
+
+    def slopes_on_grids(self, owners: IntArray, u: Array, v: Array) -> Array:
+        """(k, n, m, 2, 3) the derivatives of these alone, to the same digits."""
+        return self._on_grids(owners, u, v, 1)
+
+    def _on_grids(self, owners: IntArray, u: Array, v: Array, first: int) -> Array:
+        result = np.empty((*u.shape, v.shape[1], 3 - first, 3))
         at_once = max(CHUNK // max(result[0, ..., 0, 0].size, 1), 1) if len(owners) else 1
         for start in range(0, len(owners), at_once):
             part = slice(start, start + at_once)
-            result[part] = self._evaluate_grids(owners[part], u[part], v[part])
+            result[part] = self._evaluate_grids(owners[part], u[part], v[part], first)
         return result
 
-    def _evaluate_grids(self, owners: IntArray, u: Array, v: Array) -> Array:
+    def _evaluate_grids(self, owners: IntArray, u: Array, v: Array, first_row: int) -> Array:
         (span_u, basis_u, slope_u), (span_v, basis_v, slope_v) = (
             self._basis(way, np.repeat(owners, at.shape[1]), at.ravel()) for way, at in enumerate((u, v))
         )
@@ -93,17 +100,18 @@ class SplineSurfaces:
             poles = self._poles[np.minimum(corner + across + reach, len(self._poles) - 1)]
             lines[0] += basis_u[i].reshape(*u.shape, 1, 1) * poles
             lines[1] += slope_u[i].reshape(*u.shape, 1, 1) * poles
-        values = np.zeros((3, *u.shape, v.shape[1], self._poles.shape[-1]))
+        values, rational = np.zeros((3, *u.shape, v.shape[1], self._poles.shape[-1])), self._poles.shape[-1] > 3
         every, line = np.arange(len(owners))[:, None, None], np.arange(u.shape[1])[:, None]
         for j in range(self._degrees[1] + 1):
             near = lines[:, every, line, (columns - first + j)[:, None]]
             basis = basis_v[j].reshape(len(v), 1, -1, 1)
-            values[0] += basis * near[0]
+            if not first_row or rational:
+                values[0] += basis * near[0]
             values[1] += basis * near[1]
             values[2] += slope_v[j].reshape(basis.shape) * near[0]
-        if values.shape[-1] > 3:
+        if rational:
             values = _quotient(values.reshape(3, -1, 4)).reshape(*values.shape[:-1], 3)
-        return np.moveaxis(values, 0, -2)
+        return np.moveaxis(values[first_row:], 0, -2)
 
     def _evaluate(self, owners: IntArray, parameters: Array) -> Array:
         (span_u, basis_u, slope_u), (span_v, basis_v, slope_v) = (

@@ -19,6 +19,7 @@ from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.garbage import keep_what_is_loaded
 from cadpanel.reference.settings import ReferenceSettings
 from cadpanel.reference.texts import AUTO, BY_FITS, STRIPS
 
@@ -265,6 +266,7 @@ def _delivered(
     from cadpanel.delivery.deliver import fill_delivery
     from cadpanel.delivery.records.stock import stock_shortfall
 
+    keep_what_is_loaded()
     report = fill_delivery(
         result, folder, asked.sheet, asked.shop, seconds_to_read=seconds_to_read, progress=shown.count
     )

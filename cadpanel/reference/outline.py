@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from cadpanel.arrays import Array, IntArray
-from cadpanel.errors import OutlineError
+from cadpanel.errors import OutlineError, PanelError
 from cadpanel.geometry.polyline import end_tangents, interpolate
 from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.inner_edges import Contact, Edge, free_edges, panel_edges, split_at_vertices
@@ -96,7 +96,24 @@ def find_outline(panel: RawPanel, source: str, tolerance: float = TOUCH_TOLERANC
         PanelError: there are no faces, or one is too narrow.
     """
     check_faces(panel, source)
+    return _outline(panel, source, _walk(panel, tolerance))
+
+
+def outline_and_gap(panel: RawPanel, source: str, tolerance: float) -> tuple[Outline | None, float]:
+    """What `find_outline` and `bridged_gap` give, walked round once; no outline where the panel has none."""
+    try:
+        check_faces(panel, source)
+    except PanelError:
+        return None, bridged_gap(panel, tolerance)
     walk = _walk(panel, tolerance)
+    try:
+        outline = _outline(panel, source, walk)
+    except PanelError:
+        return None, _gap(panel, walk)
+    return outline, _gap(panel, walk)
+
+
+def _outline(panel: RawPanel, source: str, walk: _Walk) -> Outline:
     if not walk.is_whole(panel):
         refuse_hairs(panel, source, _touch_tolerance(panel))
         check_loops(panel, source, walk.signs, walk.free, walk.loops, walk.loose, walk.tolerance)
@@ -140,9 +157,11 @@ def bridged_gap(panel: RawPanel, tolerance: float) -> float:
         panel: with faces that have an area.
         tolerance: as for `find_outline`, mm.
     """
-    if len(panel.faces) < 2:
-        return 0.0
-    return max((contact.gap for contact in _walk(panel, tolerance).contacts), default=0.0)
+    return 0.0 if len(panel.faces) < 2 else _gap(panel, _walk(panel, tolerance))
+
+
+def _gap(panel: RawPanel, walk: _Walk) -> float:
+    return 0.0 if len(panel.faces) < 2 else max((contact.gap for contact in walk.contacts), default=0.0)
 
 
 def _walk(panel: RawPanel, tolerance: float) -> _Walk:

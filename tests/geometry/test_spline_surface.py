@@ -65,7 +65,9 @@ def test_a_grid_is_what_its_points_are_one_by_one(seed, degree_u, degree_v, rati
     u[0, 0], v[0, -1] = 0.0, 1.0
     parameters = np.stack(np.broadcast_arrays(u[:, :, None], v[:, None, :]), axis=-1)
     wanted = many.evaluate(np.repeat(owners, 21), parameters.reshape(-1, 2)).reshape(5, 7, 3, 3, 3)
-    np.testing.assert_allclose(many.evaluate_grids(owners, u, v), wanted, rtol=0.0, atol=1e-12 * np.abs(wanted).max())
+    found = many.evaluate_grids(owners, u, v)
+    np.testing.assert_allclose(found, wanted, rtol=0.0, atol=1e-12 * np.abs(wanted).max())
+    np.testing.assert_array_equal(many.slopes_on_grids(owners, u, v), found[..., 1:, :])
 
 
 @settings(max_examples=10)

@@ -9,7 +9,7 @@ from cadpanel.brep.read import read_reference
 from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.outline import bridged_gap, find_outline
+from cadpanel.reference.outline import bridged_gap, find_outline, outline_and_gap
 from cadpanel.reference.settings import ReferenceSettings
 from tests.reference_shapes import (
     Lip,
@@ -41,10 +41,20 @@ def test_a_gap_is_bridged_exactly_where_it_is_within_the_tolerance(size, toleran
     if size > tolerance:
         with pytest.raises(PanelError, match=r"the nearest other one is .* mm away|trim faces that overlap"):
             find_outline(panel, "roof.step", tolerance)
+        assert outline_and_gap(panel, "roof.step", tolerance) == (None, bridged_gap(panel, tolerance))
         return
     found, whole = (assemble([one], "roof.step", tolerance).panels[0] for one in (panel, raw_panel(STRAIGHT)))
     np.testing.assert_allclose(found.corners, whole.corners, atol=size + 1e-6)
     assert bridged_gap(panel, tolerance) == pytest.approx(size, rel=1e-6)
+    outline, gap = outline_and_gap(panel, "roof.step", tolerance)
+    assert gap == bridged_gap(panel, tolerance)
+    assert outline is not None
+    for side, same in zip(outline.sides, find_outline(panel, "roof.step", tolerance).sides, strict=True):
+        np.testing.assert_array_equal(side.points, same.points)
+
+
+def test_a_panel_without_faces_has_neither_outline_nor_gap():
+    assert outline_and_gap(RawPanel(name="none", faces=()), "roof.step", 5.0) == (None, 0.0)
 
 
 @pytest.mark.parametrize("tolerance", [0.5, 1.0, 5.0])

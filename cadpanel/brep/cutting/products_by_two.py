@@ -12,11 +12,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple, cast
+from typing import cast
 
 from OCP.Standard import Standard_Failure
 
-from cadpanel.brep.cutting.raw_panels import PANELS_AT_ONCE, RawReference, mended_products
+from cadpanel.brep.cutting.raw_panels import PANELS_AT_ONCE, RawReference, all_of, mended_products
 from cadpanel.brep.files.catalogue import format_of
 from cadpanel.brep.files.loading import Extent, extent_of, moved_back, origin_note, origin_within, placed_together
 from cadpanel.brep.files.model import NamedShape
@@ -30,7 +30,6 @@ from cadpanel.brep.isolation.requests import SECONDS_TO_WORK
 from cadpanel.brep.isolation.time_limit import limit_time
 from cadpanel.brep.skin.panel_cleanup import Mended
 from cadpanel.errors import CadpanelError
-from cadpanel.reference.outline import Outline, find_outline
 from cadpanel.reference.settings import ReferenceSettings
 
 WORTHWHILE_BYTES = 8_000_000
@@ -60,13 +59,6 @@ class _Told:
 
     names: tuple[str, ...]
     origin: Place | None
-
-
-class _Done(NamedTuple):
-    """Some of the panels, and their outlines."""
-
-    mended: Mended
-    outlines: tuple[Outline, ...]
 
 
 def products_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
@@ -118,14 +110,16 @@ def _read_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
         count = len(own.said.called)
         channel.say(_Told(names=tuple(names[count:]), origin=origin))
         first = own.done(_Told(names=tuple(names[:count]), origin=origin), how)
-        last = cast(_Done, channel.hear())
-    mended = first.mended.followed_by(last.mended)
+        mended = first.followed_by(cast(Mended, channel.hear()))
+    outlines = all_of(mended.outlines)
+    if outlines is None:
+        return None
     moved = () if origin is None else (origin_note(path.name, origin),)
     return RawReference(
         panels=mended.panels,
         notes=(*moved, *mended.notes(path.name, how.seam_tolerance)),
         origin=origin or AT_HOME,
-        outlines=(*first.outlines, *last.outlines),
+        outlines=outlines,
     )
 
 
@@ -159,7 +153,7 @@ class _Half:
             ),
         )
 
-    def done(self, told: _Told, how: ReferenceSettings) -> _Done:
+    def done(self, told: _Told, how: ReferenceSettings) -> Mended:
         """Its panels, sampled and mended, under their names and near their origin.
 
         Raises:
@@ -167,8 +161,7 @@ class _Half:
         """
         named = tuple(replace(one, name=name) for one, name in zip(self.shapes, told.names, strict=True))
         shapes = named if told.origin is None else moved_back(named, told.origin)
-        mended = mended_products(shapes, self.source, how.seam_tolerance)
-        return _Done(mended, tuple(find_outline(panel, self.source, how.seam_tolerance) for panel in mended.panels))
+        return mended_products(shapes, self.source, how.seam_tolerance)
 
 
 @contextmanager

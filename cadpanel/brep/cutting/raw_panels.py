@@ -65,9 +65,17 @@ def raw_panels(found: Model | Products, how: ReferenceSettings, drawn: Drawn | N
     if isinstance(found, Products):
         mended = mended_products(found.shapes, found.source, how.seam_tolerance)
         notes = mended.notes(found.source, how.seam_tolerance)
-        return RawReference(panels=mended.panels, notes=(*found.notes, *notes), origin=found.origin)
+        return RawReference(
+            panels=mended.panels, notes=(*found.notes, *notes), origin=found.origin, outlines=all_of(mended.outlines)
+        )
     raw = _part_panels(found, how) if how.way is None else _cut_panels(found, how, drawn)
     return replace(raw, origin=found.origin)
+
+
+def all_of(outlines: Sequence[Outline | None]) -> tuple[Outline, ...] | None:
+    """The outlines, if there are all of them."""
+    found = tuple(outline for outline in outlines if outline is not None)
+    return found if len(found) == len(outlines) else None
 
 
 def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
@@ -81,7 +89,7 @@ def _part_panels(model: Model, settings: ReferenceSettings) -> RawReference:
         notes = [f"'{model.source}' holds {many}."] if curves else []
         whole = mended_products(shapes, model.source, settings.seam_tolerance)
         notes += whole.notes(model.source, settings.seam_tolerance)
-        return RawReference(panels=whole.panels, notes=(*model.notes, *notes))
+        return RawReference(panels=whole.panels, notes=(*model.notes, *notes), outlines=all_of(whole.outlines))
     chosen, mended = skin_faces(
         select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
     )

@@ -92,16 +92,16 @@ class SurfaceBatch:
             v: (k, m) the same along v.
         """
         groups = self._group_of[faces]
-        values = np.empty((*u.shape, v.shape[1], 3, 3))
+        values = np.empty((*u.shape, v.shape[1], 2, 3))
         for group, splines in enumerate(self._groups):
             chosen = np.flatnonzero(groups == group)
             own = faces[chosen]
             along = [_within(at[chosen], self._periods[own, None, way]) for way, at in enumerate((u, v))]
-            values[chosen] = splines.evaluate_grids(self._place_of[own], *along)
+            values[chosen] = splines.slopes_on_grids(self._place_of[own], *along)
         for place in np.flatnonzero(groups < 0).tolist():
             grid = np.stack(np.meshgrid(u[place], v[place], indexing="ij"), axis=-1).reshape(-1, 2)
-            values[place] = kernel_values(self._others[faces[place]], grid).reshape(values.shape[1:])
-        return values[..., 1, :], values[..., 2, :]
+            values[place] = kernel_values(self._others[faces[place]], grid)[:, 1:].reshape(values.shape[1:])
+        return values[..., 0, :], values[..., 1, :]
 
     def _in_period(self, owners: IntArray, parameters: Array) -> Array:
         """The parameters, those of periodic surfaces within the period that has the poles."""

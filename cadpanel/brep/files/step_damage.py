@@ -27,9 +27,7 @@ def damage(model: StepData_StepModel) -> str | None:
     syntax = model.GlobalCheck(True)
     if syntax.HasFailed():
         return str(syntax.CFail(1)).strip().rstrip(".")
-    for number in range(1, model.NbEntities() + 1):
-        if not model.IsErrorEntity(number):
-            continue
+    for number in filter(model.IsErrorEntity, range(1, model.NbEntities() + 1)):
         entity, check = model.Value(number), model.ReportEntity(number).Check()
         faults = [str(check.CFail(index)).strip() for index in range(1, check.NbFails() + 1)]
         faults = [fault for fault in faults if not fault.endswith("not a quoted String")]

@@ -14,7 +14,7 @@ from cadpanel.brep.kernel.shapes import faces_of
 from cadpanel.brep.skin.adjacency import WORTH_A_NOTE
 from cadpanel.brep.skin.face_cleanup import find_doubles, width_of_hair
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.outline import bridged_gap
+from cadpanel.reference.outline import Outline, bridged_gap, outline_and_gap
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,6 +26,7 @@ class Mended:
         hairs, doubled, creased: a sentence without its stop on each face that has no width, lies on another one of its
             panel, or has a crease inside.
         gaps: how far the faces of each panel gape, mm.
+        outlines: of the panels; None for one that has none, and whoever needs it says why.
     """
 
     panels: tuple[RawPanel, ...]
@@ -33,6 +34,7 @@ class Mended:
     doubled: tuple[str, ...] = ()
     creased: tuple[str, ...] = ()
     gaps: tuple[float, ...] = ()
+    outlines: tuple[Outline | None, ...] = ()
 
     def followed_by(self, other: Mended) -> Mended:
         """These panels and others, as if they had been mended together."""
@@ -42,6 +44,7 @@ class Mended:
             doubled=(*self.doubled, *other.doubled),
             creased=(*self.creased, *other.creased),
             gaps=(*self.gaps, *other.gaps),
+            outlines=(*self.outlines, *other.outlines),
         )
 
     def notes(self, source: str, tolerance: float) -> tuple[str, ...]:
@@ -86,12 +89,14 @@ def mend_panels(panels: Sequence[RawPanel], shapes: Sequence[TopoDS_Shape], sour
             "left out"
             for second, first in sorted(doubles.items())
         ]
+    walked = [outline_and_gap(panel, source, tolerance) for panel in mended]
     return Mended(
         panels=tuple(mended),
         hairs=tuple(hairs),
         doubled=tuple(doubled),
         creased=tuple(creased),
-        gaps=_gaps(mended, tolerance),
+        gaps=tuple(gap for _, gap in walked),
+        outlines=tuple(outline for outline, _ in walked),
     )
 
 

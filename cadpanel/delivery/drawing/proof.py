@@ -1,39 +1,33 @@
 """Drawings read back: is what is cut the exact contour, do the bends lie where they should, does ezdxf find a fault?
 
-The frames of all drawings of a delivery are the same bytes, so that one audit of the drawing with all parts stands for
-every file; the entities of each are read and measured.
+ezdxf reads and audits the drawing with all parts. That stands for every file, as the frames of all drawings of a
+delivery are the same bytes, and the entities of each are those of that one, moved: both are proved. The entities of
+each are read and measured.
 """
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cadpanel.arrays import Array
 from cadpanel.delivery.contents import Contents, Proof
 from cadpanel.delivery.drawing.dxf import MARK
-from cadpanel.delivery.drawing.entities import Drawing
 from cadpanel.delivery.drawing.part import bend_lines, roll_lines
-from cadpanel.delivery.drawing.redrawn import drawings_of, holds
+from cadpanel.delivery.drawing.reading import SAME_PLACE, Drawn, drawn_in, moved_only
+from cadpanel.delivery.drawing.redrawn import digest_of, drawings_of, holds
 from cadpanel.delivery.records.flat_parts import ALL, FlatPart
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import DeliveryError
+from cadpanel.garbage import garbage_left
 from cadpanel.geometry.biarcs import arc_contour_area, off_arcs
 
-if TYPE_CHECKING:
-    from ezdxf.entities.dxfentity import DXFEntity
-
-SAME_PLACE = 1e-6
-"""Distance in mm of two points that are meant to be one."""
 _ENDING = ".dxf"
-_VERSION = b"  0\r\nSECTION\r\n  2\r\nHEADER\r\n  9\r\n$ACADVER\r\n  1\r\nAC1015\r\n  0\r\nENDSEC\r\n  0\r\nSECTION\r\n"
 _ENTITIES = b"  2\r\nENTITIES\r\n"
 _END = b"  0\r\nENDSEC\r\n"
-_GUARD = b"  0\r\nPOINT\r\n  8\r\n0\r\n"
 # Places on each curve of the exact contour that are looked for in the drawing.
 _PLACES = 33
 
@@ -44,10 +38,13 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     Raises:
         DeliveryError: one of them is missing or cannot be read.
     """
-    drawn = cast(dict[str, Drawing], dict(contents.drawn))
+    written = dict(contents.drawn)
     contents.drawn.clear()
     whole = folder / f"{ALL}{_ENDING}"
-    frame, errors, contours = _audited(whole, contents.shop)
+    with garbage_left():
+        errors, contours = _audited(whole, contents.shop)
+        frame, text = _split(whole)
+        together, place, elsewhere = _read(whole, text), 0, list[str]()
     failures = [f"'{whole.name}': ezdxf finds {error}." for error in errors]
     if len(contours) != len(contents.parts):
         failures.append(f"'{whole.name}' holds {len(contours)} contours, expected {len(contents.parts)}.")
@@ -57,15 +54,21 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
         failures.append(f"'{whole.name}': its contours enclose {area_off:.3g} mm2 too much or too little.")
     for part in contents.parts:
         path = folder / f"{part.blank.file}{_ENDING}"
-        own_frame, entities = _read(path)
+        own_frame, text = _split(path)
         if own_frame != frame:
             failures.append(f"'{path.name}': what stands about its entities is not what '{whole.name}' has.")
+        entities = _read(path, text)
         found = list(_part_faults(part, _on_layers(entities), contents.shop))
         failures += [f"'{path.name}': {fault}." for _, fault in found if fault]
+        if not moved_only(entities, together[place : (place := place + len(entities))]):
+            elsewhere.append(f"'{path.name}' holds other entities than '{whole.name}' has of this part.")
         off = max([off, *(measured for measured, _ in found)])
     strange = sorted({path.name for path in folder.iterdir()} - {whole.name} - _files(contents.parts))
+    if place != len(together):
+        elsewhere.append(f"'{whole.name}' holds {len(together)} entities, and those of the parts are {place}.")
+    failures = failures or elsewhere
     if not failures:
-        failures += _redrawn_faults(folder, contents, drawn)
+        failures += _redrawn_faults(folder, contents, written)
     failures += [f"'{name}' stands among the drawings, and no panel of the report is drawn there." for name in strange]
     return Proof(
         numbers={"drawings": len(contents.parts) + 1, "audit_errors": len(errors), "contour_error": off},
@@ -73,12 +76,22 @@ def prove_drawings(folder: Path, contents: Contents) -> Proof:
     )
 
 
-def _redrawn_faults(folder: Path, contents: Contents, drawn: dict[str, Drawing]) -> Iterator[str]:
+def _redrawn_faults(folder: Path, contents: Contents, written: Mapping[str, str]) -> Iterator[str]:
     """What is drawn besides contours and bends, and how, where these are as they should be."""
-    for name, drawing in (drawn or drawings_of(contents)).items():
-        entities = _split(folder / f"{name}{_ENDING}")[1].removeprefix(_VERSION + _ENTITIES).removesuffix(_END)
-        if not holds(entities, drawing, contents.shop.dxf_entities):
-            yield f"'{name}{_ENDING}' does not hold just what the report's numbers and settings draw."
+    names = [part.blank.file for part in contents.parts]
+    if written:
+        # What has just been drawn by the same numbers need not be drawn again to be known.
+        other = [
+            name for name in (*names, ALL) if digest_of((folder / f"{name}{_ENDING}").read_bytes()) != written.get(name)
+        ]
+    else:
+        other = [
+            name
+            for name, drawing in drawings_of(contents).items()
+            if not holds(_split(folder / f"{name}{_ENDING}")[1], drawing, contents.shop.dxf_entities)
+        ]
+    for name in other:
+        yield f"'{name}{_ENDING}' does not hold just what the report's numbers and settings draw."
 
 
 def _files(parts: Sequence[FlatPart]) -> set[str]:
@@ -90,7 +103,7 @@ def _area_allowed(part: FlatPart, shop: ShopSettings) -> float:
     return shop.chord * bent + SAME_PLACE * sum(part.size.pieces)
 
 
-def _part_faults(part: FlatPart, layers: dict[str, list[Any]], shop: ShopSettings) -> Iterator[tuple[float, str]]:
+def _part_faults(part: FlatPart, layers: dict[str, list[Drawn]], shop: ShopSettings) -> Iterator[tuple[float, str]]:
     """Distances that were measured, each with what is wrong with it, or nothing."""
     contours = _contours(layers.get(shop.layer("CUT"), []))
     if len(contours) != 1:
@@ -108,15 +121,14 @@ def _part_faults(part: FlatPart, layers: dict[str, list[Any]], shop: ShopSetting
     wanted = {} if shop.dxf_contour_only else {"BEND": bend_lines(part), "ROLL": roll_lines(part, shop.roll_pitch)}
     for role in {shop.layer(role): role for role in wanted}.values():
         alike = [lines for other, lines in wanted.items() if shop.layer(other) == shop.layer(role)]
-        found = [entity for entity in layers.get(shop.layer(role), []) if entity.dxftype() == "LINE"]
-        drawn = np.array([[line.dxf.start.vec2, line.dxf.end.vec2] for line in found]).reshape(-1, 2, 2)
+        found = [entity.vertices for entity in layers.get(shop.layer(role), []) if entity.kind == "LINE"]
+        drawn = np.array(found).reshape(-1, 2, 3)[..., :2]
         yield 0.0, "" if _same_lines(drawn, np.concatenate(alike)) else f"its lines on the layer {role} lie elsewhere"
 
 
-def _hole_faults(part: FlatPart, entities: Sequence[Any]) -> tuple[float, str]:
+def _hole_faults(part: FlatPart, entities: Sequence[Drawn]) -> tuple[float, str]:
     """How far off a circle that is cut lies, and what is wrong with circles, or nothing."""
-    found = [entity for entity in entities if entity.dxftype() == "CIRCLE"]
-    drawn = np.array([[*entity.dxf.center.vec2, entity.dxf.radius] for entity in found]).reshape(-1, 3)
+    drawn = np.array([entity.vertices[0] for entity in entities if entity.kind == "CIRCLE"]).reshape(-1, 3)
     middles = np.empty((0, 2)) if part.fixings is None else part.fixings.middles
     if len(drawn) != len(middles):
         return 0.0, f"it holds {len(drawn)} circles on the layer that is cut instead of {len(middles)}"
@@ -139,24 +151,38 @@ def _same_lines(drawn: Array, wanted: Array) -> bool:
     return bool(apart.max() <= SAME_PLACE)
 
 
-def _audited(path: Path, shop: ShopSettings) -> tuple[bytes, list[str], list[Array]]:
-    """The frame of the drawing of all parts, what ezdxf's audit says of it, and its contours."""
+def _audited(path: Path, shop: ShopSettings) -> tuple[list[str], list[Array]]:
+    """What ezdxf's audit says of the drawing of all parts, and its contours as ezdxf reads them."""
     from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
-    frame, _ = _split(path)
     try:
         document = readfile(path)
     except (OSError, DXFError, ValueError) as error:
         raise DeliveryError(f"'{path}' cannot be read: {error}.") from error
     audit = document.audit()
     errors = [problem.message for problem in (*audit.errors, *audit.fixes)]
-    layers = _on_layers(list(document.modelspace()))
-    return frame, errors, _contours(layers.get(shop.layer("CUT"), []))
+    layers = _on_layers(list(map(_by_ezdxf, document.modelspace())))
+    return errors, _contours(layers.get(shop.layer("CUT"), []))
+
+
+def _by_ezdxf(entity: Any) -> Drawn:
+    """An entity as ezdxf reads it; of those that make no contour just where it lies."""
+    from ezdxf.lldxf.encoding import decode_dxf_unicode
+
+    kind, layer = entity.dxftype(), decode_dxf_unicode(entity.dxf.layer)
+    if kind == "LWPOLYLINE":
+        return Drawn(kind, layer, entity.get_points("xyb"), closed=entity.closed)
+    if kind == "LINE":
+        return Drawn(kind, layer, [(*end.vec2, 0.0) for end in (entity.dxf.start, entity.dxf.end)])
+    if kind == "ARC":
+        bulge = float(np.tan(0.25 * np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)))
+        return Drawn(kind, layer, [(*entity.start_point.vec2, bulge), (*entity.end_point.vec2, 0.0)])
+    return Drawn(kind, layer, ())
 
 
 def _split(path: Path) -> tuple[bytes, bytes]:
-    """What stands before and behind the entities of a drawing, and a file of these alone."""
+    """What stands before and behind the entities of a drawing, and these."""
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -165,42 +191,34 @@ def _split(path: Path) -> tuple[bytes, bytes]:
     entities, _, tail = rest.partition(_END)
     if not (data.startswith(MARK) and mark and tail):
         raise DeliveryError(f"'{path}' cannot be read: it is not a whole drawing of cadpanel.")
-    return head + tail, _VERSION + mark + entities + _END
+    return head + tail, entities
 
 
-def _read(path: Path) -> tuple[bytes, list[DXFEntity]]:
-    from ezdxf.addons import iterdxf
-    from ezdxf.lldxf.const import DXFError
-
-    frame, data = _split(path)
-    # The last entity before the section's end would not be told of: that is one of our own.
-    stream = io.BytesIO(data.replace(_END, _GUARD + _END))
+def _read(path: Path, entities: bytes) -> list[Drawn]:
     try:
-        return frame, [one for one in iterdxf.single_pass_modelspace(stream) if one.dxftype() != "POINT"]
-    except (DXFError, ValueError) as error:
+        return drawn_in(entities)
+    except ValueError as error:
         raise DeliveryError(f"'{path}' cannot be read: {error}.") from error
 
 
-def _on_layers(entities: Sequence[Any]) -> dict[str, list[Any]]:
-    from ezdxf.lldxf.encoding import decode_dxf_unicode
-
-    found: dict[str, list[Any]] = {}
+def _on_layers(entities: Sequence[Drawn]) -> dict[str, list[Drawn]]:
+    found: dict[str, list[Drawn]] = {}
     for entity in entities:
-        found.setdefault(decode_dxf_unicode(entity.dxf.layer), []).append(entity)
+        found.setdefault(entity.layer, []).append(entity)
     return found
 
 
-def _contours(entities: Sequence[Any]) -> list[Array]:
+def _contours(entities: Sequence[Drawn]) -> list[Array]:
     """Closed contours (v, 3): polylines, and lines and arcs each of which begins where the one before ends.
 
     None if a line or an arc goes on from nowhere, or a contour does not close.
     """
     found = [
-        np.array(entity.get_points("xyb"))
+        np.array(entity.vertices)
         for entity in entities
-        if entity.dxftype() == "LWPOLYLINE" and entity.closed and len(entity) > 1
+        if entity.kind == "LWPOLYLINE" and entity.closed and len(entity.vertices) > 1
     ]
-    pieces = [_ways(entity) for entity in entities if entity.dxftype() in ("LINE", "ARC")]
+    pieces = [_ways(entity) for entity in entities if entity.kind in ("LINE", "ARC")]
     chain: list[_Piece] = []
     for place, ways in enumerate(pieces):
         if chain:
@@ -227,13 +245,8 @@ class _Piece(NamedTuple):
     bulge: float
 
 
-def _ways(entity: Any) -> list[_Piece]:
+def _ways(entity: Drawn) -> list[_Piece]:
     """A line or an arc, followed one way and the other."""
-    bulge = 0.0
-    if entity.dxftype() == "LINE":
-        start, stop = entity.dxf.start, entity.dxf.end
-    else:
-        start, stop = entity.start_point, entity.end_point
-        bulge = float(np.tan(0.25 * np.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0)))
-    ends = np.array(start.vec2), np.array(stop.vec2)
-    return [_Piece(*ends, bulge), _Piece(*ends[::-1], -bulge)]
+    rows = np.array(entity.vertices)
+    start, stop, bulge = rows[0, :2], rows[1, :2], float(rows[0, 2])
+    return [_Piece(start, stop, bulge), _Piece(stop, start, -bulge)]

@@ -25,16 +25,16 @@ class FlatDxf(Output):
     def write(self, folder: Path, delivery: Delivery) -> None:
         """See `Output.write`."""
         from cadpanel.delivery.drawing.dxf import dxf_bytes, frame_of
-        from cadpanel.delivery.drawing.redrawn import drawings_of
+        from cadpanel.delivery.drawing.redrawn import digest_of, drawings_of
 
         frame, entities = frame_of(delivery.shop), delivery.shop.dxf_entities
         place = folder / FLAT
         try:
             place.mkdir()
-            drawings = drawings_of(delivery)
-            delivery.drawn.update(drawings)
-            for name, drawing in drawings.items():
-                (place / f"{name}{ENDING}").write_bytes(dxf_bytes(drawing, frame, entities))
+            for name, drawing in drawings_of(delivery).items():
+                text = dxf_bytes(drawing, frame, entities)
+                delivery.drawn[name] = digest_of(text)
+                (place / f"{name}{ENDING}").write_bytes(text)
         except OSError as error:
             raise DeliveryError(f"'{place}' cannot be written: {error.strerror or error}.") from error
 

@@ -11,6 +11,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from cadpanel.errors import DeliveryError
+from cadpanel.garbage import garbage_left
 from cadpanel.sizes import refuse_huge
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -93,9 +94,10 @@ def read_json(path: Path, model: type[RecordType], *, schema: str, what: str) ->
     except UnicodeDecodeError as error:
         raise DeliveryError(f"'{path}' is not {what}: it is not UTF-8 text (byte {error.start}).") from error
     try:
-        content = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_without_doubles)
-        _check_schema(content, schema)
-        return model.model_validate_json(text, strict=True)
+        with garbage_left():
+            content = json.loads(text, parse_constant=_refuse_constant, object_pairs_hook=_without_doubles)
+            _check_schema(content, schema)
+            return model.model_validate_json(text, strict=True)
     except ValidationError as error:
         raise DeliveryError(f"'{path}' is not {what}: {_first_fault(error)}.") from error
     except json.JSONDecodeError as error:
@@ -111,8 +113,9 @@ def write_json(record: Record, path: Path) -> None:
         DeliveryError: the file cannot be written, or an added key holds a number that is not finite.
     """
     try:
-        content = record.model_dump(mode="json", by_alias=True)
-        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+        with garbage_left():
+            content = record.model_dump(mode="json", by_alias=True)
+            text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     except ValueError as error:
         raise DeliveryError(f"'{path}' is not written: {error}.") from error
     try:

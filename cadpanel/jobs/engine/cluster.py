@@ -8,13 +8,11 @@ references and deliveries of a whole building never lie in memory together.
 
 from __future__ import annotations
 
-import gc
 import logging
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from functools import cache
 from importlib.util import find_spec
 from time import monotonic
 from types import TracebackType
@@ -217,16 +215,7 @@ def _at_a_worker(task: Task, contents: Sequence[Content | bytes], by_host: Mappi
     from distributed import get_worker
 
     worker = get_worker()
-    made = work(task, contents, _Telling(worker, task.name), side_by_side=by_host.get(_host(worker.address), 1))
-    _keep_what_is_loaded()
-    return made
-
-
-@cache
-def _keep_what_is_loaded() -> None:
-    """Look for garbage no more among the hundred thousand objects of the kernel's binding, all of which stay."""
-    gc.collect()
-    gc.freeze()
+    return work(task, contents, _Telling(worker, task.name), side_by_side=by_host.get(_host(worker.address), 1))
 
 
 class _Telling:

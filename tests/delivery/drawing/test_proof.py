@@ -21,6 +21,7 @@ SHOPS = {
     "contour": ShopSettings(dxf_contour_only=True, dxf_entities="lines"),
     "layers": ShopSettings(dxf_layers=(("CUT", "Kont\u00fcr"), ("BEND", "\u7a97"), ("ROLL", "MARK"))),
 }
+ELSEWHERE = "'N 3.dxf' holds other entities than 'all.dxf' has of this part."
 
 
 def contents(shop):
@@ -125,6 +126,21 @@ def test_a_part_that_is_missing_among_all_shows(drawn, changed):
     assert "'all.dxf' holds 1 contours, expected 3." in failures
     (folder / "all.dxf").write_bytes(whole)
     assert prove_drawings(folder, drawn[1]).failures == ()
+
+
+def test_a_part_that_is_another_one_among_all_shows(drawn, changed):
+    folder, _ = changed
+    entities, end, tail = (folder / "all.dxf").read_bytes().partition(b"ENDSEC\r\n  0\r\nSECTION\r\n  2\r\nOBJECTS")
+    before, code, rest = entities.rpartition(b"\r\n 10\r\n")
+    value, line, after = rest.partition(b"\r\n")
+    other = before + code + repr(float(value) + 1e-5).encode() + line + after
+    (folder / "all.dxf").write_bytes(other + end + tail)
+    failures = prove_drawings(folder, drawn[1]).failures
+    # Where nothing but contours is drawn, one of them is open now.
+    shows = "'all.dxf' holds 0 contours, expected 3." if drawn[1].shop.dxf_contour_only else ELSEWHERE
+    assert failures[0] == shows
+    (folder / "all.dxf").write_bytes(entities.replace(b"AcDbEntity", b"AcDbEntitx", 1) + end + tail)
+    assert prove_drawings(folder, drawn[1]).failures
 
 
 def test_a_drawing_of_no_panel_shows_and_a_missing_or_damaged_one_is_refused(drawn, changed):

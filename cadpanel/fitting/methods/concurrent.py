@@ -145,7 +145,7 @@ def _hold_seams(
     if any(isinstance(term, KinkTerm) for term in model.held) and Stop.TOLD not in found.stopped:
         missed = np.array([stop not in (Stop.HELD, Stop.STEP_LIMIT) for stop in found.stopped])
         if missed.any():
-            found = less_kinked(problem, model, found, begin, asked, settings, missed)
+            found = less_kinked(problem, model, found, begin, asked, starts[0], settings, missed)
     # Where gaps had to give way, or it was told to end, nothing holds them at their tolerance.
     if not found.held:
         return Fitted(found.unknowns, iterations + found.iterations, stopped_as(found), met=met)

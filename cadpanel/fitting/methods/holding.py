@@ -194,11 +194,8 @@ def held_within(
         costly: whether a deviation may be too large for any tolerance; not where only what panels must keep to is held.
         tell: told the step, the largest excess over a tolerance, and the RMS deviation in mm; whether to go on.
     """
-    blocks = Components.of(model.pattern)
-    alone = blocks.total(problem.deviation.cost(problem.state(local)))
-    # Half the squares of all panels' lengths: shares of a length count against them.
-    lengths = 0.5 * blocks.total(model.lengths**2)
-    most = np.maximum(_MOST_MULTIPLE**2 * alone, lengths * _MOST_SHARE**2) if costly else np.inf
+    lengths = _lengths(model)
+    most = most_cost(problem, model, local) if costly else np.inf
 
     def told(step: int, excess: float, cost: Array) -> bool:
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
@@ -208,6 +205,17 @@ def held_within(
     return hold_or_give_way(
         model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
     )
+
+
+def most_cost(problem: Problem, model: HeldObjective, local: Array) -> Array:
+    """(components,) the cost of a deviation beyond which nothing is an approximation, of local fits (panels, size)."""
+    alone = Components.of(model.pattern).total(problem.deviation.cost(problem.state(local)))
+    return np.maximum(_MOST_MULTIPLE**2 * alone, _lengths(model) * _MOST_SHARE**2)
+
+
+def _lengths(model: HeldObjective) -> Array:
+    """(components,) half the squares of all panels' lengths: shares of a length count against them."""
+    return 0.5 * Components.of(model.pattern).total(model.lengths**2)
 
 
 def stopped_as(found: HeldSolution) -> Stop:

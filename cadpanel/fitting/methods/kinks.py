@@ -16,7 +16,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from cadpanel.arrays import Array, BoolArray
-from cadpanel.fitting.methods.holding import EXACT, look_again, seam_excess
+from cadpanel.fitting.methods.holding import EXACT, look_again, most_cost, seam_excess
 from cadpanel.fitting.objective import HeldObjective
 from cadpanel.fitting.problem import Problem
 from cadpanel.fitting.settings import FitSettings
@@ -42,6 +42,7 @@ def less_kinked(
     found: HeldSolution,
     start: Array,
     asked: Sequence[Array],
+    local: Array,
     settings: FitSettings,
     where: BoolArray,
 ) -> HeldSolution:
@@ -53,18 +54,19 @@ def less_kinked(
         found: what the search for what gives way ended with.
         start: (panels, size) unknowns to begin with; they do not hang on the kink that is asked for.
         asked: the distances of what is held as they were before anything was tightened.
+        local: (panels, size) the local fits; no kink is worth a deviation beyond a multiple of theirs.
         settings: what is asked for.
         where: (components,) which components.
     """
-    blocks = Components.of(model.pattern)
-    kept, reached, steps = _tried_wider(problem, model, found, settings, where)
+    blocks, most = Components.of(model.pattern), most_cost(problem, model, local)
+    kept, reached, steps = _tried_wider(problem, model, found, most, settings, where)
     searched = where & (reached > 1.0)
     if searched.any():
         none = Limits(steps=0, least_cost=0.5 * blocks.total(model.lengths**2) * EXACT**2)
         with _kinks_alone_give_way(problem, model, asked, start, found.unknowns):
-            search = hold_or_give_way(model, model.starting_from(start), none, only=searched)
+            search = hold_or_give_way(model, model.starting_from(start), none, most_cost=most, only=searched)
         now, steps = _largest(problem, search.unknowns, settings, blocks), steps + search.iterations
-        nearer = searched & (search.end.best.firm <= _FIRM) & (now < reached)
+        nearer = searched & (search.end.best.firm <= _FIRM) & (search.end.best.cost <= most) & (now < reached)
         kept, reached = np.where(blocks.each(nearer), search.unknowns, kept), np.where(nearer, now, reached)
     better = where & (reached < _largest(problem, found.unknowns, settings, blocks))
     # As it is beside what is held.
@@ -74,7 +76,12 @@ def less_kinked(
 
 
 def _tried_wider(
-    problem: Problem, model: HeldObjective, found: HeldSolution, settings: FitSettings, where: BoolArray
+    problem: Problem,
+    model: HeldObjective,
+    found: HeldSolution,
+    most: Array,
+    settings: FitSettings,
+    where: BoolArray,
 ) -> tuple[Array, Array, int]:
     """Go on from what was found with kinks that may be larger: unknowns, (components,) their excess, and steps."""
     blocks = Components.of(model.pattern)
@@ -88,7 +95,7 @@ def _tried_wider(
         end = interior_point(model, model.starting_from(kept), Limits(steps=_STEPS), only=where)
         steps += end.steps
         now = _largest(problem, end.best.unknowns, settings, blocks)
-        nearer = where & (end.best.firm <= _FIRM) & (now < reached)
+        nearer = where & (end.best.firm <= _FIRM) & (end.best.cost <= most) & (now < reached)
         kept = np.where(blocks.each(nearer), end.best.unknowns, kept)
         reached = np.where(nearer, now, reached)
         least = np.where(nearer, least, np.maximum(least, np.minimum(wider, reached)))

@@ -20,16 +20,15 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from shutil import rmtree
 from threading import Event, Thread
 
 from cadpanel.brep.kernel.messages import silence_kernel
 from cadpanel.jobs.summary import SUMMARY, read_summary
-from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
-from tests.benchmarks.strips import long_lip
+from tests.benchmarks.strips import uneven_lip
 
 OUTPUTS = ("step", "flats")
 LOOKED_AT = 0.5
@@ -109,18 +108,13 @@ def _memory_of(process: int) -> float:
     return sum(float(line.split()[1]) for line in lines if line.startswith("Pss:")) / 1e3
 
 
-def lips(regions: int, panels: int, seed: int) -> list[Lip]:
-    """A lip for each region, all of them such that default settings hold."""
-    plan, rise = (300.0 / max(panels, 50),), (50.0 / max(panels, 50),)  # not once round, to meet itself
-    return [replace(long_lip(panels, seed * 1000 + region), plan=plan, rise=rise) for region in range(regions)]
-
-
 def measure(folder: Path, regions: int, panels: int, workers: int, seed: int) -> Spent:
     """What a building takes whose files are written into a folder."""
     silence_kernel()
     folder.mkdir(parents=True)
     job = [f"[defaults]\noutputs = [{', '.join(map(repr, OUTPUTS))}]\n"]
-    for number, lip in enumerate(lips(regions, panels, seed)):
+    for number in range(regions):
+        lip = uneven_lip(panels, number, seed)
         name = f"R{number:03}"
         write(Fixture(file=f"{name}.step", prefix=name, table=(), lip=lip), folder / f"{name}.step")
         job.append(f'[regions.{name}]\nreference = "{name}.step"\n')

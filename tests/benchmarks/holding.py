@@ -1,6 +1,7 @@
 """The default mode, limits in millimetres: its time, against scipy.optimize, on grids, and on lips drawn at random.
 
     python -m tests.benchmarks.holding strips --panels 100 --panels 1000
+    python -m tests.benchmarks.holding uneven --count 12 --panels 500
     python -m tests.benchmarks.holding grids --side 20 --side 100
     python -m tests.benchmarks.holding scipy --panels 10 --panels 100
     python -m tests.benchmarks.holding lips --count 100
@@ -38,7 +39,7 @@ from fixtures.arrays import reference
 from fixtures.grids import dome, grid
 from fixtures.lips import Lip
 from tests.benchmarks.solver import Prepared, scipys
-from tests.benchmarks.strips import long_lip
+from tests.benchmarks.strips import long_lip, uneven_lip
 
 app = typer.Typer(add_completion=False)
 
@@ -54,6 +55,18 @@ def strips(panels: Annotated[list[int], typer.Option(help="Strips to fit.")]) ->
     _head()
     for count in panels:
         _row(f"{count} in a strip", cp.fit, reference(long_lip(count)), FitSettings())
+
+
+@app.command()
+def uneven(
+    count: Annotated[int, typer.Option(help="How many.")] = 12,
+    panels: Annotated[int, typer.Option(help="Panels of each.")] = 500,
+    seed: Annotated[int, typer.Option(help="Of them all.")] = 1,
+) -> None:
+    """Fit strips with spots that are hard to hold, as a building has them in `tests.benchmarks.building`."""
+    _head()
+    for number in range(count):
+        _row(f"{panels} unevenly, {number}", cp.fit, reference(uneven_lip(panels, number, seed)), FitSettings())
 
 
 @app.command()

@@ -10,7 +10,7 @@ from fixtures.lips import Lip
 _PANELS_A_KNOT = 10
 
 
-def long_lip(panels: int, seed: int = 0) -> Lip:
+def long_lip(panels: int, seed: int = 0, *, plan: float = 6.0, rise: float = 1.0) -> Lip:
     """A lip whose twist swings to both sides; one-sided twist would add up over thousands of panels."""
     random = np.random.default_rng(seed)
     knots = max(3, panels // _PANELS_A_KNOT)
@@ -21,10 +21,15 @@ def long_lip(panels: int, seed: int = 0) -> Lip:
     return Lip(
         panels=panels,
         twist=along(-0.8, 0.8),
-        plan=(6.0,),
-        rise=(1.0,),
+        plan=(plan,),
+        rise=(rise,),
         fold=along(92.0, 100.0),
         radius=along(280.0, 420.0),
         lower=along(420.0, 520.0),
         upper=along(520.0, 640.0),
     )
+
+
+def uneven_lip(panels: int, number: int, seed: int) -> Lip:
+    """One of many lips of which no two are alike, not once round, to meet itself; some have spots hard to hold."""
+    return long_lip(panels, seed * 1000 + number, plan=300.0 / max(panels, 50), rise=50.0 / max(panels, 50))

@@ -7,7 +7,7 @@ import pytest
 import cadpanel as cp
 from cadpanel.reference.model import Reference
 from fixtures.arrays import reference
-from tests.benchmarks.building import lips
+from tests.benchmarks.strips import uneven_lip
 
 # A seed of a strip of 500 panels, and some of its panels that took hundreds of steps while the barrier was lowered
 # before anything held: the search for what can be held ended at wide gaps, or at panels far from the reference.
@@ -27,7 +27,7 @@ def between(whole: Reference, first: int, last: int) -> Reference:
 
 @pytest.mark.parametrize(("number", "first", "last"), HARD)
 def test_a_hard_spot_is_held_in_few_steps(number, first, last):
-    strip = reference(lips(number + 1, 500, 1)[number])
+    strip = reference(uneven_lip(500, number, 1))
     result = cp.fit(between(strip, first, last))
     assert result.tolerance_met
     assert result.iterations <= STEPS

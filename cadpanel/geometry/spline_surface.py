@@ -100,7 +100,8 @@ class SplineSurfaces:
             poles = self._poles[np.minimum(corner + across + reach, len(self._poles) - 1)]
             lines[0] += basis_u[i].reshape(*u.shape, 1, 1) * poles
             lines[1] += slope_u[i].reshape(*u.shape, 1, 1) * poles
-        values, rational = np.zeros((3, *u.shape, v.shape[1], self._poles.shape[-1])), self._poles.shape[-1] > 3
+        values = np.zeros((3, *u.shape, v.shape[1], self._poles.shape[-1]))
+        rational = self._poles.shape[-1] > 3
         every, line = np.arange(len(owners))[:, None, None], np.arange(u.shape[1])[:, None]
         for j in range(self._degrees[1] + 1):
             near = lines[:, every, line, (columns - first + j)[:, None]]

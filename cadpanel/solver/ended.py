@@ -11,6 +11,9 @@ from cadpanel.arrays import Array, BoolArray
 from cadpanel.solver.barrier import Barriers
 from cadpanel.solver.components import Components
 
+LEAST_DAMPING = 0.03
+"""See `Limits`."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
@@ -23,6 +26,8 @@ class Limits:
         idle: so many steps may bring what does not hold no nearer to holding.
         patience: for so many steps what may give way waits for what must hold; of thousands of panels one is always
             over, and waiting for it takes longer than it saves.
+        least_damping: the least share of the cost's own matrix that steps are damped by. Less lets long strips come to
+            rest as wholes sooner, where hardly anything that is held binds.
     """
 
     steps: int = 100
@@ -30,6 +35,7 @@ class Limits:
     least_cost: Array | float = 0.0
     idle: float = math.inf
     patience: int = 0
+    least_damping: float = LEAST_DAMPING
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ it would end alone. What a step spoils in one place is not undone in another, se
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -21,15 +22,15 @@ from cadpanel.solver.barrier import Barriers, Work
 from cadpanel.solver.blocks import Normal
 from cadpanel.solver.bounds import BoundedStep, bounded_step
 from cadpanel.solver.components import Components
-from cadpanel.solver.ended import Ended, Limits
+from cadpanel.solver.ended import LEAST_DAMPING, Ended, Limits
 from cadpanel.solver.held_model import HeldModel
 from cadpanel.solver.held_rows import HeldRows
 from cadpanel.solver.merit import Merit, Place
 from cadpanel.solver.nielsen import FIRST_GROWTH, Nielsen
 
 # Damping: a share of the free cost's own Gauss-Newton matrix, and how much of its diagonal's unit stands in for rows of
-# zeros. It never falls below the first: constraints that change sides from step to step would let it oscillate.
-_DAMPING = Nielsen(least=0.03, most=1e6, drop=0.2, rise=2.0)
+# zeros. It never falls below what `Limits` say: constraints that change sides from step to step would let it oscillate.
+_DAMPING = Nielsen(least=LEAST_DAMPING, most=1e6, drop=0.2, rise=2.0)
 _IDLE = 1e-4
 # After so many refusals that damping grows by this factor, multipliers begin anew.
 _STUCK = 16.0
@@ -106,6 +107,7 @@ class _Run:
         after: Ended | None,
     ) -> None:
         self.model, self.limits = model, limits
+        self.rule = replace(_DAMPING, least=limits.least_damping)
         self.pattern, self.bounds = model.pattern, model.bounds
         self.blocks = Components.of(self.pattern)
         count = self.blocks.count
@@ -147,7 +149,7 @@ class _Run:
         mu = self.mu[self.of.label]
         self.barriers = Barriers(held, most=_ELASTIC * mu, ease=ease)
         self.barriers.open(at, self.widest[self.of.label], self.lag[self.of.label], mu)
-        self.damping = np.full(count, _DAMPING.least)
+        self.damping = np.full(count, self.rule.least)
 
     def _begin_anew(self, where: BoolArray) -> None:
         """Begin again at the best point so far of some components."""
@@ -216,8 +218,8 @@ class _Run:
         work = self.barriers.add_to(normal, at, point.jacobians, self.mu[self.of.label], damping)
         bounded = bounded_step(pattern, normal, np.zeros_like(point.unknowns), point.unknowns, self.bounds)
         if bounded is None:
-            self.damping = np.where(goes_on, np.minimum(10.0 * self.damping, _DAMPING.most), self.damping)
-            self.goes_on = goes_on & (self.damping < _DAMPING.most)
+            self.damping = np.where(goes_on, np.minimum(10.0 * self.damping, self.rule.most), self.damping)
+            self.goes_on = goes_on & (self.damping < self.rule.most)
             return
         moved = self.barriers.moved(point.jacobians, bounded.step)
         step = bounded.step + self._bent(bounded, work, moved)
@@ -229,7 +231,7 @@ class _Run:
         far = self.blocks.largest(np.abs(step) / self.scales)
         calmer = np.clip(self.lag * (far / _STEP) ** _LAG_POWER, _LEAST_LAG, _MOST_LAG)
         self.lag = np.where(failed, np.minimum(_MOST_LAG, self.lag**0.5), calmer)
-        damped, growth = _DAMPING.after(self.damping, self.growth, gain, failed)
+        damped, growth = self.rule.after(self.damping, self.growth, gain, failed)
         self.damping, self.growth = (
             np.where(goes_on, new, old) for new, old in ((damped, self.damping), (growth, self.growth))
         )

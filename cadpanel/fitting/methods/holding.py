@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -43,6 +43,8 @@ _MOST_SHARE = 0.05
 _ARC_SHARE = 0.82
 # Where seams part still further they are held at a smaller one, such that they come to this share of it.
 _AIM = 0.99
+# Where only what panels must keep to is held, hardly anything binds: the share that damps steps at least.
+_LEAST_DAMPING = 1e-3
 # A panel that deviates by no more than this share of its length, RMS, is exact.
 EXACT = 1e-8
 
@@ -201,7 +203,9 @@ def held_within(
         return tell is None or tell(step, excess, problem.rms(cost) * problem.place.length)
 
     begin = model.starting_from(start)
-    limits = Limits(least_cost=lengths * EXACT**2, idle=math.inf if costly else IDLE)
+    limits = Limits(least_cost=lengths * EXACT**2)
+    if not costly:
+        limits = replace(limits, idle=IDLE, least_damping=_LEAST_DAMPING)
     return hold_or_give_way(
         model, begin, limits, most_cost=most, only=only, after=after, elsewhere=elsewhere, tell=told
     )

@@ -47,7 +47,7 @@ _GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
 # The barrier falls where nothing exceeds its distance by more than this factor.
-_NEAR = 1.5
+_NEAR = 1.2
 # What exceeds its distances by as much as this share of what it did has made no headway.
 _NEARER = 0.95
 # Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless

@@ -11,7 +11,7 @@ from tests.benchmarks.strips import uneven_lip
 
 # A seed of a strip of 500 panels, and some of its panels that took hundreds of steps while the barrier was lowered
 # before anything held: the search for what can be held ended at wide gaps, or at panels far from the reference.
-HARD = ((10, 5, 41), (10, 0, 50), (10, 14, 50), (1, 80, 130))
+HARD = ((10, 5, 41), (10, 0, 50), (1, 80, 130), (4, 160, 210), (8, 0, 60))
 STEPS = 100
 
 

@@ -46,8 +46,9 @@ _GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
-# The barrier falls where nothing exceeds its distance by more than this factor.
-_NEAR = 1.2
+# The barrier falls where nothing exceeds its distance by more than the first factor. Until then it begins anew where the
+# cost has become so many times what it began with.
+_NEAR, _TOO_LOW = 1.2, 4.0
 # What exceeds its distances by as much as this share of what it did has made no headway.
 _NEARER = 0.95
 # Distances that may give way are not narrowed while what must hold exceeds its own by more than the first share, unless
@@ -277,10 +278,11 @@ class _Run:
         held = np.maximum(self.now.firm, self.now.excess) <= 1.0 + self.limits.feasibility
         done = through & (self.mu <= end) & held & (promised <= rest)
         # What is far from holding needs greater multipliers first: with a barrier that is lowered before, steps creep
-        # along what holds already. What these multipliers are worth is told by the cost that they have led to.
+        # along what holds already. Where the start cost next to nothing, what they are worth shows only by and by.
         near = np.maximum(self.now.firm, self.now.excess) <= _NEAR
         falls = np.maximum(self.mu * _BARRIER_DROP, 0.5 * end)
-        rises = np.maximum(self.mu, _BARRIER * cost / self.sharing)
+        worth = _BARRIER * cost / self.sharing
+        rises = np.where(worth > _TOO_LOW * self.mu, worth, self.mu)
         self.mu = np.where(through & ~done, np.where(near, falls, rises), self.mu)
         self.settled, self.goes_on = self.settled | done, self.goes_on & ~done
         # What must hold comes first: narrowed while it does not, the others would drive it further off. It may never.

@@ -46,8 +46,8 @@ _GAIN, _READY, _SHARE_LEFT = 0.25, 0.1, 3e-4
 # Damped by this and more, steps lead nowhere: multipliers that rose far beyond what the cost is worth leave no way but
 # along what they hold. Barrier and damping begin anew at the best point then, so many times at most.
 _WEDGED, _ANEW = 1e5, 3
-# The barrier falls where nothing exceeds its distance by more than the first factor. Until then it begins anew where the
-# cost has become so many times what it began with.
+# The barrier falls where nothing exceeds its distance by more than the first factor. Until then it begins anew where
+# the cost has become so many times what it began with.
 _NEAR, _TOO_LOW = 1.2, 4.0
 # What exceeds its distances by as much as this share of what it did has made no headway.
 _NEARER = 0.95

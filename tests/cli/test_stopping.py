@@ -1,4 +1,4 @@
-"""`cadpanel fit` that is interrupted, killed or loses its terminal: it leaves nothing behind."""
+"""`cadpanel fit` and `cadpanel run` that are interrupted, killed or lose their terminal: nothing half done is left."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from cadpanel.delivery.manifest import changed_files
+from cadpanel.jobs.summary import SUMMARY, read_summary
+from tests.jobs.jobs import job, reference
 from tests.thorough import cases, thorough
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
@@ -150,3 +153,45 @@ def test_the_second_interrupt_stops_it_and_more_disturb_nothing(
     assert process.returncode == 130
     assert err.splitlines()[-1:] == ["Interrupted."]
     assert list(tmp_path.iterdir()) == []
+
+
+MANY = "\n".join(f"R{number} = {{thickness = {1 + 0.1 * number:g}}}" for number in range(8))
+
+
+@thorough
+@pytest.mark.parametrize(("workers", "times"), [(1, 4), (2, 1), (2, 4)])
+def test_an_interrupt_of_a_whole_terminal_leaves_the_regions_that_are_done(
+    tmp_path: Path, workers: int, times: int
+) -> None:
+    reference(tmp_path)
+    job(tmp_path, MANY)
+    out = tmp_path / "out"
+    words = [*PROGRAM, "run", "job.toml", "--out", "out", "--cache", "cache", "--workers", str(workers)]
+    with subprocess.Popen(
+        words,
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=heed_every_signal,
+        start_new_session=True,
+    ) as process:
+        try:
+            give_up = time.monotonic() + 120.0
+            while not list(out.glob("R?")):
+                assert time.monotonic() < give_up
+                time.sleep(0.05)
+            for _ in range(times):
+                os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+                time.sleep(0.02)
+            _, err = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    assert process.returncode == 130, err
+    assert err.splitlines()[-1] == "Interrupted."
+    assert "Traceback" not in err
+    rows = {row.region: row.state for row in read_summary(out / SUMMARY).rows}
+    whole = {path.name for path in out.iterdir() if path.is_dir()}
+    assert whole == {name for name, state in rows.items() if state == "made"}
+    assert {state for name, state in rows.items() if name not in whole} == {"waiting"}
+    assert not [name for name in whole if changed_files(out / name)]

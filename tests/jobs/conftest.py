@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -27,3 +29,11 @@ def done(strip: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with Results(place / "cache") as results:
         assert made(path, place / "out", results).code in (0, 1)
     return place / "out"
+
+
+@pytest.fixture
+def heeding() -> Iterator[None]:
+    """Ctrl-C is heeded as in a terminal, and afterwards as it was before."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -9,9 +9,10 @@ references and deliveries of a whole building never lie in memory together.
 from __future__ import annotations
 
 import logging
+from asyncio import gather
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from importlib.util import find_spec
 from time import monotonic
@@ -19,18 +20,22 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from cadpanel.errors import SettingsError
+from cadpanel.jobs.engine import deaf as first_loaded
+from cadpanel.jobs.engine.deaf import deaf
 from cadpanel.jobs.engine.engine import TellOf
 from cadpanel.jobs.task import Content, Task
 from cadpanel.jobs.work import FAILED, Made, refused, work
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, LocalCluster
 
 LOST = 3
 """Workers that may be lost over one task before it is taken to be at fault."""
 _TOPIC = "cadpanel"
 _NEEDED = "distributed"
 _SECONDS_TO_CONNECT = 20
+_SECONDS_TO_END = 0.5
+"""For a worker that is not to finish what it is at."""
 _AHEAD = 2
 """Tasks given out for each that can be worked at, so that no worker waits for the next one."""
 _FEWEST = 4
@@ -46,6 +51,7 @@ _SETTINGS = {
 _CALM = {
     # Made for tasks of milliseconds. With those of minutes, looking so often at what each process does, and at its
     # memory, takes a fifth of two processors.
+    "distributed.worker.preload": [first_loaded.__name__],
     "distributed.worker.profile.enabled": False,
     "distributed.worker.memory.monitor-interval": "2s",
     "distributed.admin.tick.interval": "2s",
@@ -79,6 +85,7 @@ class Cluster:
                 "--workers and --scheduler"
             )
         self._workers, self._scheduler = workers, scheduler
+        self._started: LocalCluster | None = None
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
@@ -93,12 +100,17 @@ class Cluster:
         self._open.enter_context(dask.config.set(_SETTINGS | (_CALM if self._scheduler is None else {})))
         where: Any = self._scheduler
         if where is None:
-            where = self._open.enter_context(
+            with deaf():  # those that begin later are told by `dask_setup`
                 # One thread each: a process has one environment, and one second interpreter.
-                LocalCluster(
-                    n_workers=self._workers, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+                where = LocalCluster(
+                    n_workers=self._workers,
+                    threads_per_worker=1,
+                    dashboard_address=":0",  # any that is free: two jobs may run side by side
+                    scheduler_kwargs={"dashboard": False},
+                    silence_logs=logging.CRITICAL,
                 )
-            )
+            self._open.enter_context(where)
+            self._started = where
         try:
             self.client = self._open.enter_context(Client(where, timeout=_SECONDS_TO_CONNECT, set_as_default=False))
         except (OSError, ValueError) as error:
@@ -112,7 +124,9 @@ class Cluster:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End what was started."""
+        """End what was started; where something went wrong, whatever it is at."""
+        if error is not None and self._started is not None:
+            self._started.sync(_end_at_once, self._started)
         self._open.__exit__(kind, error, trace)
 
     def run(self, tasks: Sequence[Task], tell: TellOf) -> Iterator[Made]:
@@ -153,6 +167,12 @@ class Cluster:
             return made
         said = f"{type(error).__name__}: {' '.join(str(error).split())}"
         return Made(key=task.key, code=FAILED, archive=None, said=said)
+
+
+async def _end_at_once(cluster: LocalCluster) -> None:
+    """End workers that would first go on for seconds with what they are at."""
+    with suppress(TimeoutError):  # one that takes its time to end is ended already
+        await gather(*(nanny.close(timeout=_SECONDS_TO_END) for nanny in cluster.workers.values()))
 
 
 class _Contents:

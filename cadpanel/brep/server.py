@@ -20,6 +20,7 @@ from cadpanel.brep.cutting.raw_panels import RawReference, raw_panels
 from cadpanel.brep.cutting.ways import load_drawn
 from cadpanel.brep.files.loading import load_model, load_reference
 from cadpanel.brep.files.model import Model
+from cadpanel.brep.isolation.copies import Ends, see_off, serving_copy
 from cadpanel.brep.isolation.parent_watch import ends_with_whoever_asked
 from cadpanel.brep.isolation.processors import given_processors
 from cadpanel.brep.isolation.requests import HEADER, NEXT_STAGE, Request, Stage, framed
@@ -31,6 +32,7 @@ from cadpanel.brep.proof.inspection import Inspector, Packed, inspect_packed
 from cadpanel.brep.proof.rebuilding import rebuild
 from cadpanel.brep.survey import Survey, measured
 from cadpanel.errors import CadpanelError
+from cadpanel.memory import give_back
 from cadpanel.reference.settings import ReferenceSettings
 
 GoOn = Callable[[], None]
@@ -95,8 +97,11 @@ WORKS: dict[str, Callable[[Request, GoOn], object]] = {
     "rebuild": lambda request, _: rebuild(cast(Sequence[Sheet], request.argument)),
     "back": lambda request, go_on: find_back(request.path, cast(Path, request.argument), go_on),
     "close": lambda _request, _: INSPECTOR.close(),
+    "copy": lambda request, _: serving_copy(cast(Ends, request.argument), serve),
 }
 """What can be asked for."""
+LET_GO = frozenset({"panels", "survey", "rails", "close", "kept", "back"})
+"""After which a file is held no more, or what was read of it."""
 
 
 class _Stages:
@@ -145,10 +150,14 @@ def serve(requests: BinaryIO, answers: BinaryIO) -> None:
     """Answer one request after the other until none comes."""
     while header := requests.read(HEADER.size):
         request = pickle.loads(requests.read(HEADER.unpack(header)[0]))
+        see_off()
         with ends_with_whoever_asked(requests.fileno()):
             found = answer(request, answers)
         answers.write(framed(found))
         answers.flush()
+        del found
+        if request.work in LET_GO:
+            give_back()
 
 
 def main() -> None:

@@ -22,6 +22,7 @@ from cadpanel.errors import CadpanelError, DeliveryError, ProofError
 from cadpanel.jobs.archive import packed
 from cadpanel.jobs.make import Asked, make_delivery
 from cadpanel.jobs.task import Content, Task, located, program, program_sum
+from cadpanel.memory import give_back
 
 RETRIES = 2
 """How often a task that has failed is tried again; what is refused would be refused again, and is not."""
@@ -84,6 +85,8 @@ def work(task: Task, contents: Sequence[Content | bytes], tell: Tell, *, side_by
             failed = Made(key=task.key, code=FAILED, archive=None, said=said, details=details, tries=tries)
         else:
             return Made(key=task.key, code=MISSED if missed else MET, archive=archive, said=missed, tries=tries)
+        finally:
+            give_back()
         tell(f"failed {tries} of {RETRIES + 1} times", 0, 1, failed.said or "")
     return failed
 

@@ -104,7 +104,7 @@ def _be_the_copy(work: Callable[[Channel], None], channel: Channel, parent: int)
     try:
         ctypes.CDLL(None).prctl(_DIES_WITH_PARENT, signal.SIGKILL)
         if os.getppid() == parent:
-            _let_go_of_all_but({1, 2, *channel.handles()})
+            let_go_of_all_but({1, 2, *channel.handles()})
             work(channel)
             channel.close()
     except BaseException:  # noqa: BLE001 - silence says it, and nothing of this process may run on
@@ -112,7 +112,7 @@ def _be_the_copy(work: Callable[[Channel], None], channel: Channel, parent: int)
     os._exit(0)
 
 
-def _let_go_of_all_but(handles: set[int]) -> None:
+def let_go_of_all_but(handles: set[int]) -> None:
     """Close what others wait to be closed: the pipes to the process that has asked."""
     for handle in [int(entry.name) for entry in Path("/proc/self/fd").iterdir()]:
         if handle not in handles:

@@ -12,6 +12,7 @@ Nothing of the kernel is imported here, so that a command can start the reader b
 from __future__ import annotations
 
 import atexit
+import os
 import pickle
 import queue
 import subprocess
@@ -20,10 +21,12 @@ import tempfile
 import threading
 import time
 from pathlib import Path
-from typing import IO
+from typing import IO, cast
 
+from cadpanel.brep.isolation.copies import COPYABLE, Copy, Ends
 from cadpanel.brep.isolation.interpreter import interpreter
-from cadpanel.brep.isolation.requests import HEADER, Request, Work, framed, work_request
+from cadpanel.brep.isolation.requests import HEADER, SECONDS_TO_READ, Request, Stage, Work, framed, work_request
+from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
 CHUNK_BYTES = 1 << 20
@@ -31,6 +34,7 @@ CHUNK_BYTES = 1 << 20
 LOOK_UP = 0.5
 # On Windows, what a process that has crashed returns is not below 0, but from here on.
 CRASHED_ON_WINDOWS = 0xC0000000
+Process = subprocess.Popen[bytes] | Copy
 
 
 class Interpreter:
@@ -38,13 +42,13 @@ class Interpreter:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: Process | None = None
         self._said: IO[bytes] | None = None
         self._frames: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
         self._listener: threading.Thread | None = None
         self._killed = False
 
-    def start(self) -> subprocess.Popen[bytes]:
+    def start(self) -> Process:
         """Return the running interpreter, a new one if there is none.
 
         Raises:
@@ -54,20 +58,23 @@ class Interpreter:
             raise RuntimeError("the second interpreter was killed")
         if self._process is None or self._process.poll() is not None:
             self._end()
-            self._said = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the interpreter runs
-            self._process = subprocess.Popen(
-                interpreter("cadpanel.brep.server"),
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=self._said,
-                bufsize=0,
-            )
+            self._process = self._begun()
             self._heed_kill()
             # A thread waits for what comes: a pipe that is read with a time limit is a thing of POSIX.
             self._frames = queue.SimpleQueue()
             self._listener = threading.Thread(target=_listen, args=(self._process.stdout, self._frames), daemon=True)
             self._listener.start()
         return self._process
+
+    def _begun(self) -> Process:
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115 - open as long as the interpreter runs
+        return subprocess.Popen(
+            interpreter("cadpanel.brep.server"),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._said,
+            bufsize=0,
+        )
 
     def ask(self, request: Request) -> object:
         """Hand over one request and return the answer.
@@ -116,7 +123,7 @@ class Interpreter:
             return frame
         raise TimeoutError
 
-    def _last_words(self, process: subprocess.Popen[bytes]) -> str:
+    def _last_words(self, process: Process) -> str:
         """How the interpreter ended: by a signal, or with an exception that it did not expect."""
         code = process.wait()
         if code <= 0 or code >= CRASHED_ON_WINDOWS or self._said is None:
@@ -187,6 +194,51 @@ def _listen(stream: IO[bytes], frames: queue.SimpleQueue[bytes | None]) -> None:
             frames.put(received(HEADER.unpack(received(HEADER.size))[0]))
     except (EOFError, OSError):
         frames.put(None)
+
+
+class CopiedInterpreter(Interpreter):
+    """One that begins as a copy of another one, which has loaded what it needs, where that is possible.
+
+    Whether it is the one or the other makes no difference to whoever asks it.
+    """
+
+    def __init__(self, original: Interpreter) -> None:
+        """Say of which one."""
+        super().__init__()
+        self._original = original
+
+    def _begun(self) -> Process:
+        if COPYABLE:
+            try:
+                return _copy_of(self._original)
+            except (CadpanelError, RuntimeError, OSError):  # then it begins as any other does
+                pass
+        return super()._begun()
+
+
+def _copy_of(original: Interpreter) -> Copy:
+    """A copy of an interpreter, which is started if it does not run.
+
+    Raises:
+        CadpanelError: it makes none.
+        RuntimeError: it was killed for good.
+        OSError: the copy has ended already, or there are no more pipes.
+    """
+    its_requests, requests = os.pipe()
+    answers, its_answers = os.pipe()
+    ends = Ends(process=os.getpid(), requests=its_requests, answers=its_answers)
+    stage = Stage(file="a copy", doing="copying", seconds=SECONDS_TO_READ)
+    within = Path(__file__).parent
+    try:
+        process = original.ask(Request(work="copy", folder=within, path=within, argument=ends, stages=(stage,)))
+        return Copy(cast(int, process), requests, answers)
+    except BaseException:
+        os.close(requests)
+        os.close(answers)
+        raise
+    finally:
+        os.close(its_requests)
+        os.close(its_answers)
 
 
 READER = Interpreter()

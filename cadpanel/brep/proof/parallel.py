@@ -1,8 +1,8 @@
 """Reads and inspects the two files of a delivery in the guarded interpreter, and in one more, if that pays.
 
 A file may be damaged as well as a reference may, so neither is read here. The one more reads the skins while the other
-one reads the panels; then both inspect panels until none is left. It takes about 2 s to load the kernel, so whoever
-knows in time that files will be inspected starts it before.
+one reads the panels; then both inspect panels until none is left. It begins as a copy of the other one; where that is
+not possible it loads the kernel, which takes 2 s, so whoever knows in time that files will be inspected starts it then.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import cast
 
 from cadpanel.brep.building.wanted import Sheet
-from cadpanel.brep.isolation.client import LOOK_UP, READER, Interpreter
+from cadpanel.brep.isolation.client import LOOK_UP, READER, CopiedInterpreter, Interpreter
 from cadpanel.brep.isolation.processors import processors
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK, Request, Stage, looked_for_in, seconds_to_read
 from cadpanel.brep.proof.kept_facts import KeptFacts
@@ -123,6 +123,7 @@ class Helper:
         self._clerk = ThreadPoolExecutor(max_workers=1)
         self._reader = ThreadPoolExecutor(max_workers=1)
         self._begun: tuple[Path, Future[list[ShapeFacts]]] | None = None
+        self._clerk.submit(interpreter.start)
         self._opened: tuple[Path, Future[int]] | None = None
 
     def open(self, panels: Path) -> Future[int]:
@@ -169,9 +170,7 @@ def second_interpreter(panels: int) -> Iterator[Helper | None]:
     if processors() < 2 or panels < WORTHWHILE_PANELS:
         yield None
         return
-    interpreter = Interpreter()
-    interpreter.start()
-    helper = Helper(interpreter)
+    helper = Helper(CopiedInterpreter(READER))
     try:
         yield helper
     finally:

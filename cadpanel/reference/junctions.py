@@ -13,7 +13,8 @@ from cadpanel.arrays import Array
 from cadpanel.geometry.polyline import arc_length
 from cadpanel.geometry.vectors import norm, unit
 from cadpanel.reference.inner_edges import Edge, positions_on
-from cadpanel.reference.outline import EVEN_PARTS, FOUR, Outline, Side
+from cadpanel.reference.outline import Outline
+from cadpanel.reference.outline_sides import EVEN_PARTS, FOUR, Side
 
 
 def part_sides(outlines: Sequence[Outline], tolerance: float) -> list[Outline]:

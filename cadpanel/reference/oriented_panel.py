@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from cadpanel.arrays import Array, IntArray
 from cadpanel.geometry.vectors import cross, norm, unit
 from cadpanel.reference.model import RawPanel, Turning
-from cadpanel.reference.outline import Outline, Side
+from cadpanel.reference.outline import Outline
+from cadpanel.reference.outline_sides import Side
 
 # Where the mean of a panel's normals is shorter than this, it winds round too far to have a side that faces a viewer.
 WOUND = 0.1

@@ -9,7 +9,8 @@ from cadpanel.errors import PanelError
 from cadpanel.reference.assemble import assemble
 from cadpanel.reference.model import RawPanel
 from cadpanel.reference.oriented_panel import Sheet, sheet
-from cadpanel.reference.outline import EVEN_PARTS, Side, find_outline
+from cadpanel.reference.outline import find_outline
+from cadpanel.reference.outline_sides import EVEN_PARTS, Side
 from cadpanel.reference.overlaps import _loop, refuse_overlaps
 from tests.reference_shapes import (
     Lip,

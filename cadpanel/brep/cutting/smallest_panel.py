@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from cadpanel.errors import SettingsError
 from cadpanel.reference.assemble import LARGEST_TOLERANCE
-from cadpanel.reference.outline import least_edge
+from cadpanel.reference.outline_walk import least_edge
 
 # The longest edge's panels may come out longer than their mean length by this part before it counts as too short: edges
 # are measured as polylines.

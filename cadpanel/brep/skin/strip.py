@@ -16,7 +16,8 @@ from cadpanel.geometry.order import goes_backwards
 from cadpanel.geometry.polyline import arc_length, interpolate
 from cadpanel.geometry.vectors import cross, dot, norm, unit
 from cadpanel.reference.model import RawPanel
-from cadpanel.reference.outline import Side, find_outline
+from cadpanel.reference.outline import find_outline
+from cadpanel.reference.outline_sides import Side
 
 SIDES = 4
 # A chord between the long edges shorter than this part of the strip's girth gives a plane no direction.

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from cadpanel.brep.cutting.smallest_panel import require_room
 from cadpanel.errors import SettingsError
 from cadpanel.reference.assemble import LARGEST_TOLERANCE
-from cadpanel.reference.outline import least_edge
+from cadpanel.reference.outline_walk import least_edge
 
 lengths = st.lists(st.floats(100.0, 20_000.0), min_size=1, max_size=4)
 

@@ -4,12 +4,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import pytest
 
 from cadpanel.brep.isolation.beside import POSSIBLE, Lost, beside
+from tests.brep.isolation.running import ends, runs
 
 pytestmark = pytest.mark.skipif(not POSSIBLE, reason="this system copies no processes")
 
@@ -24,27 +23,11 @@ with beside(work) as channel:
     print(channel.hear(), flush=True)
     time.sleep(600.0)
 """
-WITHIN = 10.0  # s
 
 
 def echo(channel):
     while True:
         channel.say(("heard", channel.hear()))
-
-
-def runs(process):
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-
-
-def ends(process):
-    until = time.monotonic() + WITHIN
-    while runs(process) and time.monotonic() < until:
-        time.sleep(0.01)
-    return not runs(process)
 
 
 def test_what_one_says_the_other_hears_in_order_however_long_it_is():

@@ -15,7 +15,7 @@ from cadpanel.brep.isolation import client
 from cadpanel.brep.isolation.copies import COPYABLE, Copy
 from cadpanel.brep.isolation.requests import Request, Stage
 from cadpanel.errors import ReferenceFileError
-from tests.brep.isolation.test_beside import ends, runs
+from tests.brep.isolation.running import ends, runs
 
 pytestmark = [
     pytest.mark.skipif(not COPYABLE, reason="this system copies no processes"),

@@ -76,6 +76,7 @@ def test_a_copy_that_is_busy_ends_where_nobody_waits_any_more():
 
     with beside(work) as channel:
         process = channel.hear()
+        assert isinstance(process, int)
         assert runs(process)
     assert ends(process)
 

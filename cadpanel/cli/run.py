@@ -11,6 +11,7 @@ import typer
 from cadpanel.api_job import run_regions, target_of
 from cadpanel.cli import options
 from cadpanel.cli.groups import OUTPUT, RUN
+from cadpanel.cli.printable import complain
 from cadpanel.cli.region_lines import region_lines
 from cadpanel.jobs.read import read_job
 from cadpanel.jobs.run import Place
@@ -61,7 +62,12 @@ Kept = Annotated[
     ),
 ]
 Fresh = Annotated[
-    bool, typer.Option("--fresh", help="Make all regions anew, whatever was made before.", rich_help_panel=RUN)
+    bool,
+    typer.Option(
+        "--fresh",
+        help="Make all regions anew, whatever was made before; with --overwrite where deliveries stand.",
+        rich_help_panel=RUN,
+    ),
 ]
 
 
@@ -82,7 +88,7 @@ def run(
     the same content is taken from the cache, and what is done when a run is stopped is not done again.
 
     Exit codes: 0 all is well; 1 a tolerance, the stock or the proof of a region does not hold; 2 the job or a region is
-    refused; 3 a region failed as nobody foresaw, and the summary says where.
+    refused; 3 a region failed as nobody foresaw, and the summary says where; 130 after Ctrl-C.
     """
     began = time.perf_counter()
     asked = read_job(job)
@@ -94,5 +100,9 @@ def run(
         from cadpanel.cli.summary_table import print_summary
 
         print_summary(summary, target, time.perf_counter() - began)
+    elif not tell_steps:
+        for row in summary.rows:
+            if row.said:
+                complain(f"{row.region}: {row.said}\n")
     if summary.code:
         raise typer.Exit(summary.code)

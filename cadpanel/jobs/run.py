@@ -20,7 +20,7 @@ from cadpanel.jobs.building import BUILDING, put_together
 from cadpanel.jobs.engine.engine import Engine, TellOf
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.resolved import is_a_job, job_text
-from cadpanel.jobs.summary import RowModel, State, SummaryModel, row_of, write_summary
+from cadpanel.jobs.summary import STOPPED, RowModel, State, SummaryModel, row_of, write_summary
 from cadpanel.jobs.task import Task
 from cadpanel.jobs.work import MET, MISSED, Made
 
@@ -122,7 +122,9 @@ class _Run:
 
     def summary(self) -> SummaryModel:
         """Of all regions."""
-        return SummaryModel(code=max(self._codes.values(), default=MET), rows=tuple(self._rows.values()))
+        rows = tuple(self._rows.values())
+        stopped = any(row.state == "waiting" for row in rows)
+        return SummaryModel(code=STOPPED if stopped else max(self._codes.values(), default=MET), rows=rows)
 
     def hung(self) -> dict[str, Hung]:
         """Of all deliveries that are in their places, in the order of the job, how they hang in an assembly."""

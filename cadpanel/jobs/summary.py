@@ -15,6 +15,9 @@ from cadpanel.errors import DeliveryError
 SUMMARY, SUMMARY_TABLE = "summary.json", "summary.csv"
 SCHEMA = "cadpanel.summary/1"
 
+STOPPED = 130
+"""Code of a run that ended before all regions were done, as a program says that was interrupted."""
+Code = Annotated[int, Field(ge=0, le=STOPPED)]
 State = Literal["made", "kept", "there", "none", "waiting"]
 _MEASURED = ("rms_deviation", "max_deviation", "max_corner_gap", "max_seam_gap", "max_width", "max_step", "max_shift")
 
@@ -58,14 +61,15 @@ class SummaryModel(Record):
     """summary.json as a whole; rows in the order of the job, `code` as the run ended.
 
     Attributes:
-        code: 0 all holds; 1 something asked for is missed; 2 a region was refused; 3 one failed as nobody foresaw.
+        code: 0 all holds; 1 something asked for is missed; 2 a region was refused; 3 one failed as nobody foresaw; 130
+            the run ended before all were done.
         rows: a region each.
         assembly: name of the STEP file in which the panels of all regions hang; None where there is none.
         unassembled: why there is none, where regions have files for it.
     """
 
     schema_name: Literal["cadpanel.summary/1"] = Field(default="cadpanel.summary/1", alias="schema")
-    code: Annotated[int, Field(ge=0, le=3)]
+    code: Code
     rows: tuple[RowModel, ...]
     assembly: str | None = None
     unassembled: str | None = None

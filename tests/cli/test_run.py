@@ -49,7 +49,9 @@ def test_a_job_is_run_told_and_summed_up_and_its_worst_region_is_the_exit_code(
     (line,) = map(json.loads, told.err.splitlines())
     assert (line["region"], line["state"], line["met"]) == ("A", "there", False)
     kept = run(*words, "--out", tmp_path / "other", "--quiet")
-    assert (kept.code, kept.out, kept.err) == (1, "", "")
+    assert (kept.code, kept.out) == (1, "")
+    assert kept.err.startswith("A: The step of 3 mm is not met")
+    assert kept.err.count("\n") == 1
     assert (tmp_path / "other" / "A" / "job.toml").is_file()
     assert run("verify", tmp_path / "other" / "A", "--quiet").code == 0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,11 +110,17 @@ def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) 
         select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
     )
     require_reach([face.samples for face in skin], model.source)
-    surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance)
+    left_out = None if settings.faces is None else _names_left_out(model, [face.number for face in skin])
+    surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance, left_out=left_out)
     cut = cut_surfaces(model, surfaces, settings, drawn)
     shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]
     notes = dict.fromkeys((*model.notes, *mended, *gaps, *cut.notes))  # of several surfaces the same may be said
     return RawReference(panels=_sampled(shapes, model.source), notes=tuple(notes))
+
+
+def _names_left_out(model: Model, skin: Collection[int]) -> list[str]:
+    """The names of all other faces of a model than those of such numbers."""
+    return [face.label.name for face in model.faces() if face.number not in skin]
 
 
 def require_reach(faces: Sequence[FaceSamples], source: str) -> None:

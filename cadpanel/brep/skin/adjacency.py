@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -80,7 +80,11 @@ class Surface:
 
 
 def surfaces_of(
-    faces: Sequence[SkinFace], source: str, tolerance: float, most_fold: float = KNIFE_EDGE
+    faces: Sequence[SkinFace],
+    source: str,
+    tolerance: float,
+    most_fold: float = KNIFE_EDGE,
+    left_out: Collection[str] | None = None,
 ) -> tuple[tuple[Surface, ...], tuple[str, ...]]:
     """Group faces that touch along an edge, to within a tolerance.
 
@@ -89,6 +93,7 @@ def surfaces_of(
         source: the file's name.
         tolerance: how far faces that touch may lie apart, mm.
         most_fold: faces that fold by more than this where they touch are not joined, degrees.
+        left_out: the names of faces of the file that are not looked at; None where the file is looked at as a whole.
 
     Returns:
         The surfaces by their place in space (x, then y, then z of their middles), and a note where faces lie apart.
@@ -101,7 +106,7 @@ def surfaces_of(
     groups = [np.flatnonzero(labels == group).tolist() for group in range(number)]
     middles = np.array([_middle([faces[index] for index in group]) for group in groups])
     order = order_in_space(middles, max(tolerance, 1.0)).tolist()
-    names = _names([[faces[index] for index in groups[group]] for group in order])
+    names = _names([[faces[index] for index in groups[group]] for group in order], left_out)
     surfaces = []
     for name, group in zip(names, order, strict=True):
         place = {index: position for position, index in enumerate(groups[group])}
@@ -223,20 +228,22 @@ def _middle(faces: Sequence[SkinFace]) -> Array:
     return np.asarray(weights @ points / weights.sum(), dtype=np.float64)
 
 
-def _names(groups: Sequence[Sequence[SkinFace]]) -> list[str]:
-    """The name that all faces of a surface share and no other surface has; else S1, S2 by place.
+def _names(groups: Sequence[Sequence[SkinFace]], left_out: Collection[str] | None) -> list[str]:
+    """The name that all faces of a surface share and nothing else in the file has; else S1, S2 by place.
 
-    Where a surface is called S2 in the file, the one in its place gets the next free number.
+    Of chosen faces, the number of the first, behind the name that others share: who chooses others of the same file
+    gets other names. Where a surface is called S2 in the file, the one in its place gets the next free number.
     """
     shared = []
     for group in groups:
         names = {face.source.label.name for face in group}
         shared.append(names.pop() if len(names) == 1 else "")
-    uses = Counter(shared)
+    uses = Counter(shared) + Counter(left_out or ())
     own = {name for name, count in uses.items() if name and count == 1}
     spare = (f"S{number}" for number in itertools.count(len(groups) + 1))
     chosen = []
-    for place, name in enumerate(shared, start=1):
-        by_place = f"S{place}" if f"S{place}" not in own else next(word for word in spare if word not in own)
+    for place, (name, group) in enumerate(zip(shared, groups, strict=True), start=1):
+        usual = f"S{place}" if left_out is None else "-".join(filter(None, (name, f"F{group[0].number}")))
+        by_place = usual if usual not in own else next(word for word in spare if word not in own)
         chosen.append(name if name in own else by_place)
     return chosen

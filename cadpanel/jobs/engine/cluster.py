@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 
 LOST = 3
 """Workers that may be lost over one task before it is taken to be at fault."""
+_LOST_OVER_IT = (
+    f"{LOST + 1} workers were lost over it, most often for want of memory: give fewer workers, or part it into smaller "
+    "regions"
+)
 _TOPIC = "cadpanel"
 _NEEDED = "distributed"
 _SECONDS_TO_CONNECT = 20
@@ -92,25 +96,15 @@ class Cluster:
         """Start workers, or find the scheduler.
 
         Raises:
-            SettingsError: there is none.
+            SettingsError: there is none, or workers do not start.
         """
         import dask
-        from distributed import Client, LocalCluster
+        from distributed import Client
 
         self._open.enter_context(dask.config.set(_SETTINGS | (_CALM if self._scheduler is None else {})))
         where: Any = self._scheduler
         if where is None:
-            with deaf():  # those that begin later are told by `dask_setup`
-                # One thread each: a process has one environment, and one second interpreter.
-                where = LocalCluster(
-                    n_workers=self._workers,
-                    threads_per_worker=1,
-                    dashboard_address=":0",  # any that is free: two jobs may run side by side
-                    scheduler_kwargs={"dashboard": False},
-                    silence_logs=logging.CRITICAL,
-                )
-            self._open.enter_context(where)
-            self._started = where
+            where = self._started = self._open.enter_context(self._start())
         try:
             self.client = self._open.enter_context(Client(where, timeout=_SECONDS_TO_CONNECT, set_as_default=False))
         except (OSError, ValueError) as error:
@@ -120,6 +114,26 @@ class Cluster:
                 "--workers to start workers here"
             ) from error
         return self
+
+    def _start(self) -> LocalCluster:
+        from distributed import LocalCluster
+
+        try:
+            with deaf():  # those that begin later are told by `dask_setup`
+                # One thread each: a process has one environment, and one second interpreter.
+                return LocalCluster(
+                    n_workers=self._workers,
+                    threads_per_worker=1,
+                    dashboard_address=":0",  # any that is free: two jobs may run side by side
+                    scheduler_kwargs={"dashboard": False},
+                    silence_logs=logging.CRITICAL,
+                )
+        except RuntimeError as error:
+            self._open.close()
+            raise SettingsError(
+                "no workers start here: a script that asks for some does so below 'if __name__ == \"__main__\":', as "
+                f"each of them reads it again ({' '.join(str(error).split())})"
+            ) from error
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -139,7 +153,7 @@ class Cluster:
         contents = _Contents(self.client, tasks, here=self._scheduler is None)
         ended = as_completed(loop=self.client.loop)
         while left or given:
-            while left and len(given) < _AHEAD * max(_FEWEST, sum(self.client.nthreads().values())):
+            while left and len(given) < _AHEAD * max(_FEWEST, len(self.client.nthreads())):
                 task = left.popleft()
                 try:
                     found = contents.of(task)
@@ -165,8 +179,9 @@ class Cluster:
         if error is None:
             made: Made = future.result()
             return made
-        said = f"{type(error).__name__}: {' '.join(str(error).split())}"
-        return Made(key=task.key, code=FAILED, archive=None, said=said)
+        told = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        said = _LOST_OVER_IT if type(error).__name__ == "KilledWorker" else told
+        return Made(key=task.key, code=FAILED, archive=None, said=said, details=told)
 
 
 async def _end_at_once(cluster: LocalCluster) -> None:
@@ -212,11 +227,8 @@ def _sums(task: Task) -> set[str]:
 
 
 def _workers_by_host(client: Client) -> dict[str, int]:
-    """How many tasks are worked at side by side on each machine."""
-    found = Counter[str]()
-    for address, threads in client.nthreads().items():
-        found[_host(address)] += threads
-    return dict(found)
+    """How many tasks are worked at side by side on each machine: one a worker, as a process has one environment."""
+    return dict(Counter(map(_host, client.nthreads())))
 
 
 def _host(address: str) -> str:

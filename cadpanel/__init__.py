@@ -6,8 +6,9 @@
     result = cp.fit(reference, gap_tolerance=1.0)
     report = cp.deliver(result, "build/kai_tak_nw", thickness=3.0)
 
-Lengths are millimetres and angles radians, but for report.json and the command line, which speak degrees. The names
-below are loaded when they are first used: importing cadpanel loads neither the CAD kernel nor NumPy.
+Lengths are millimetres. Angles of shapes and measures are radians, those of settings, of report.json and of the command
+line degrees; shares are parts of 1, where the command line speaks of percent. The names below are loaded when they are
+first used: importing cadpanel loads neither the CAD kernel nor NumPy.
 """
 
 from __future__ import annotations

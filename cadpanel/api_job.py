@@ -42,7 +42,8 @@ def run_job(
     Args:
         job: TOML file with the regions; `cadpanel init` writes one.
         out: folder for the deliveries; `out` of the job if not given.
-        workers: so many regions at once on this machine; needs the extra 'cluster'.
+        workers: so many regions at once on this machine; needs the extra 'cluster'. A script calls it below
+            `if __name__ == "__main__":`, as every worker reads the script again.
         scheduler: address of a Dask scheduler whose workers do it, "tcp://HOST:PORT".
         cache: folder of earlier results; that of this system for such files if not given.
         overwrite: replace deliveries of regions that have changed since.

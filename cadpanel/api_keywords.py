@@ -19,6 +19,7 @@ from cadpanel.setting import options_of
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _WIDTH = 120
+_SHARES = " A share: 0.01 is 1 %."
 
 
 class MadeKeywords(TypedDict, total=False):
@@ -94,7 +95,7 @@ def spells_keywords(step: str) -> Callable[[Function], Function]:
     def spelled(function: Function) -> Function:
         named = inspect.signature(function).parameters
         lines = [
-            f"{field.name}={field.default!r}: {option.help}"
+            f"{field.name}={field.default!r}: {option.help}{_SHARES if option.metavar == 'PERCENT' else ''}"
             for kind in _SETTINGS[step]
             for field, option in options_of(kind)
             if field.name not in named

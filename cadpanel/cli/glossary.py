@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cadpanel.cli.drawings import ALONG, BLEND, DEVIATION, DRIFT, EDGES, GRID, KINK, SEAM
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Term:
@@ -22,61 +24,12 @@ class Term:
     also: tuple[str, ...] = ()
 
 
-_SEAM = r"""
-   panel A          panel B
-  -------------+
-               |  step        +-------------
-               +              |
-                <--- width -->
-"""
-_ALONG = r"""
-   panel A   | |   panel B
-             | |
-  -----------+ |
-       shift   +-----------
-"""
-_EDGES = r"""
-               side 1
-          +--------------+
-    end 0 |  ----> t     | end 1      t runs along the fold,
-          |  ^ b         |            b across it
-          +--------------+
-               side 0
-"""
-_KINK = r"""
-      A ________
-                \  <- kink: the angle between the two skins
-                 \ B
-"""
-_BLEND = r"""
-       flange    bend    flange
-      _________.-----.
-                      \
-                       | flange
-"""
-_GRID = r"""
-     V ^  +----+----+----+
-       |  |    |    |    |
-       |  +----+----+----+
-       |  |    |    |    |       --grid 3x2
-       |  +----+----+----+
-       +------------------> U
-"""
-_DRIFT = r"""
-      drawn corner   o<--drift--> x   corner of the panel
-"""
-_DEVIATION = r"""
-      drawing   .-'''''-.
-              .'    ^    '.    deviation: square to the panel
-      panel  --------------
-"""
-
 GLOSSARY: tuple[Term, ...] = (
     Term(
         name="gap",
         meaning="How far the edges of two neighbouring panels are apart at the worst place along their whole seam, mm. "
         "Its parts are width, step and shift.",
-        drawing=_SEAM,
+        drawing=SEAM,
         also=("seam gap",),
     ),
     Term(
@@ -89,29 +42,29 @@ GLOSSARY: tuple[Term, ...] = (
         name="width",
         meaning="The part of a gap that lies in the skins and square to the seam, mm: how much wider or narrower than "
         "asked for the joint is.",
-        drawing=_SEAM,
+        drawing=SEAM,
     ),
     Term(
         name="step",
         meaning="The part of a gap along the skins' normal, mm: one panel stands out beside the other. People see and "
         "feel it.",
-        drawing=_SEAM,
+        drawing=SEAM,
     ),
     Term(
         name="shift",
         meaning="The part of a gap along the seam, at its two ends, mm: edges are out of line.",
-        drawing=_ALONG,
+        drawing=ALONG,
     ),
     Term(
         name="kink",
         meaning="The largest angle between the two skins across a seam, degrees. Inside of a panel there is none.",
-        drawing=_KINK,
+        drawing=KINK,
     ),
     Term(
         name="deviation",
         meaning="How far the drawing lies from the panel that stands for it, mm: the largest, or the root mean square "
         "(RMS) over all samples by their area.",
-        drawing=_DEVIATION,
+        drawing=DEVIATION,
         also=("rms", "rms deviation"),
     ),
     Term(
@@ -124,7 +77,7 @@ GLOSSARY: tuple[Term, ...] = (
         name="drift",
         meaning="How far a corner of a panel lies from the drawn one: along the strip, and across the free edges, as a "
         "share of the panel's length.",
-        drawing=_DRIFT,
+        drawing=DRIFT,
         also=("corner drift", "drift along", "drift across"),
     ),
     Term(
@@ -148,34 +101,34 @@ GLOSSARY: tuple[Term, ...] = (
         name="side",
         meaning="Side 0 and side 1 are a panel's free edges along the fold; it is walked from side 0 to side 1. The "
         "bend's place is told from side 0 (--blend).",
-        drawing=_EDGES,
+        drawing=EDGES,
         also=("side 0", "side 1"),
     ),
     Term(
         name="end",
         meaning="End 0 and end 1 are the two edges across the fold, where a strip's panels meet each other. Each lies "
         "in a plane.",
-        drawing=_EDGES,
+        drawing=EDGES,
         also=("end 0", "end 1"),
     ),
     Term(
         name="U and V",
         meaning="The two directions in which a surface is parametrised; --grid UxV cuts it into U panels along the "
         "first and V along the second.",
-        drawing=_GRID,
+        drawing=GRID,
         also=("u", "v", "grid"),
     ),
     Term(
         name="feature",
         meaning="The kind of shape that a panel has: which planes, cylinders and cones it is made of, in which order "
         "(--feature, 'cadpanel features').",
-        drawing=_BLEND,
+        drawing=BLEND,
     ),
     Term(
         name="bend",
         meaning="The cylinder or cone of a panel; between two flanges it is what was taken for the bend: the stretch "
         "of the drawing that it stands for (--blend overrides it).",
-        drawing=_BLEND,
+        drawing=BLEND,
         also=("blend", "flange", "taken for the bend"),
     ),
     Term(
@@ -257,9 +210,43 @@ GLOSSARY: tuple[Term, ...] = (
     ),
     Term(
         name="strip",
-        meaning="A long surface that is cut across into panels (--divide, --panel-length); with --divide strips it is "
-        "cut along, into strips as wide as the deviation allows.",
+        meaning="A long surface that is cut across into panels (--divide, --panel-length); with --divide strips each "
+        "panel is as long along it as the deviation allows.",
         also=("strips",),
+    ),
+    Term(
+        name="state",
+        meaning="What became of a region of a job: made now, kept from the cache of earlier results, there already in "
+        "its folder, none where no delivery came of it, waiting where the run ended before it was done.",
+        also=("made", "kept", "there", "waiting"),
+    ),
+    Term(
+        name="matrix",
+        meaning="A table of a job's region, [regions.NAME.matrix]: a region is made for every combination of its "
+        "values.",
+    ),
+    Term(
+        name="price",
+        meaning="What a limit costs: by how many mm the RMS deviation would fall if it were one unit wider.",
+        also=("prices",),
+    ),
+    Term(
+        name="bevel",
+        meaning="By how much the wall of a sheet leans from square to it, degrees; 0 as a laser cuts it (--ends "
+        "square).",
+    ),
+    Term(
+        name="apex",
+        meaning="The point of a cone, in which its rulings would meet; far away where a bend hardly tapers.",
+    ),
+    Term(
+        name="sweep",
+        meaning="By how many degrees a bend turns, from its first ruling to its last.",
+    ),
+    Term(
+        name="origin",
+        meaning="Where the coordinates of a delivery begin in the model's: a model far from its own origin is moved "
+        "near it, by whole metres (--origin).",
     ),
     Term(
         name="each alone",

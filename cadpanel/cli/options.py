@@ -216,7 +216,7 @@ def _asked(settings: type[Any], choice: Iterable[object]) -> list[_Asked]:
     for field, option in options_of(settings):
         name, told = field.name, usual.get(field.name, field.default)
         # What may be left empty is not told, or it would seem to have been given.
-        option = replace(option, told=option.told and field.default is not None)
+        option = replace(option, told=option.told and (field.default is not None or name in usual))
         found[name] = _Asked(
             name=name,
             option=option,

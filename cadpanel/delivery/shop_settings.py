@@ -142,7 +142,9 @@ class ShopSettings:
         "", option=Option(metavar="NAME", help="What the sheet is made of, as files name it.", told=False)
     )
     author: str = setting("", option=Option(metavar="NAME", help="Who the STEP files say they are from.", told=False))
-    organization: str = setting("", option=Option(metavar="NAME", help="And from which house.", told=False))
+    organization: str = setting(
+        "", option=Option(metavar="NAME", help="Firm that STEP files name beside their author.", told=False)
+    )
 
     fixings: Sequence[float] | None = setting(
         None,

@@ -201,12 +201,12 @@ class FitSettings:
     restarts: int = setting(
         0,
         within=Range(what="number of restarts", least=0, most=1000, whole=True),
-        option=Option(help="Further starts from shaken panels; the best counts."),
+        option=Option(help="Further starts from slightly changed panels; the best counts."),
     )
     seed: int = setting(
         0,
         within=Range(what="seed", least=0, whole=True),
-        option=Option(help="Of the random numbers that shake them."),
+        option=Option(help="Seed of the random numbers for --restarts and annealing."),
     )
     energy: float | None = setting(
         None,

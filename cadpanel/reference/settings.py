@@ -69,7 +69,7 @@ class ReferenceSettings:
         1.0, option=Option(metavar="MM", help="How far panels that meet may lie apart in the file.")
     )
     unit: str | None = setting(
-        None, option=Option(metavar="UNIT", help="Of every file that has none (.brep, meshes): m, in ...")
+        None, option=Option(metavar="UNIT", help="Unit of files that carry none (.brep, meshes): mm, cm, m, in, ft ...")
     )
     faces: tuple[str, ...] | None = setting(
         None,

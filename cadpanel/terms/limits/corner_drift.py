@@ -48,7 +48,7 @@ class DriftAlong(CornerDrift):
     what = "drift along the strip"
     way = "along"
     default = 0.02
-    help = "How far corners may move along the strip, of the length."
+    help = "How far corners may move along the strip, of the panel's length."
     rows = (
         Row("max_drift_along", "Largest drift along, mm", "{:.1f}", "corners along the strip"),
         Row("drift_along_percent", "  of the panel's length", "{:.2f} %"),
@@ -70,7 +70,7 @@ class DriftAcross(CornerDrift):
     what = "drift across the free edges"
     way = "across"
     default = 0.02
-    help = "How far corners may move across it, which people see."
+    help = "How far corners may move across the free edges, which people see, of the length."
     rows = (
         Row("max_free_edge_drift", "Largest drift across, mm", "{:.1f}", "corners off the free edges"),
         Row("drift_across_percent", "  of the panel's length", "{:.2f} %"),

@@ -31,7 +31,7 @@ class DriftOutline(Limit):
     default = 0.5
     least, most = 1e-4, 0.5
     percent = True
-    help = "How far the free outline may leave the drawn one anywhere; 50 for any."
+    help = "How far the free outline may leave the drawn one anywhere; 50 % for any."
     yields = True
     remedy = "an outline that leaves the drawn one further"
     rows = (

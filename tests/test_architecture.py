@@ -222,6 +222,7 @@ THROUGH_A_DOOR = {
     "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
     "cadpanel.cli.silence": "tests/cli/test_steps.py",
+    "cadpanel.cli.drawings": "tests/cli/test_explain.py",
     "cadpanel.cli.study_tables": "tests/cli/test_study.py",
     "cadpanel.cli.summary_table": "tests/cli/test_run.py",
     "cadpanel.cli.survey_tables": "tests/cli/test_cutting.py",

@@ -122,9 +122,17 @@ def now() -> Took:
     return Took(time.perf_counter(), sum(os.times()[:4]) + sum(map(seconds_of, children())))
 
 
-def children() -> list[int]:
-    """The processes that this one has started and that run."""
-    return [int(process) for task in Path("/proc/self/task").iterdir() for process in _started_by(task)]
+def children(process: int | str = "self") -> list[int]:
+    """The processes that one has started and that run, this one if none is named, and all that those have started."""
+    own = [int(child) for task in _tasks(process) for child in _started_by(task)]
+    return [*own, *(further for child in own for further in children(child))]
+
+
+def _tasks(process: int | str) -> list[Path]:
+    try:
+        return list(Path(f"/proc/{process}/task").iterdir())
+    except OSError:  # it has ended meanwhile
+        return []
 
 
 def _started_by(task: Path) -> list[str]:

@@ -218,7 +218,6 @@ THROUGH_A_DOOR = {
     "cadpanel.brep.files.rhino_objects": "tests/brep/files/test_rhino_blocks.py",
     "cadpanel.brep.proof.kept_facts": "tests/delivery/document/test_proof.py",
     "cadpanel.brep.proof.shape_facts": "tests/brep/proof/test_certificate.py",
-    "cadpanel.brep.server": "tests/brep/test_read.py",
     "cadpanel.cli.diff_table": "tests/cli/test_diff.py",
     "cadpanel.cli.freecad": "tests/freecad/test_install.py",
     "cadpanel.cli.silence": "tests/cli/test_steps.py",

@@ -46,7 +46,7 @@ def panels(request: Request, go_on: GoOn) -> RawReference:
         CadpanelError: one of them is refused.
     """
     how = cast(ReferenceSettings, request.argument)
-    by_two = products_by_two(request.path, how)
+    by_two = products_by_two(request.path, how, go_on)
     if by_two is not None:
         return by_two
     found = load_reference(request.path, how)
@@ -114,9 +114,13 @@ class _Stages:
         limit_time(self.now.seconds)
 
     def go_on(self) -> None:
+        """Begin the next stage; the last one lasts, though a file be read again in it that two could not read."""
+        following = next(self._left, None)
+        if following is None:
+            return
         self._answers.write(NEXT_STAGE)
         self._answers.flush()
-        self.now = next(self._left)
+        self.now = following
         limit_time(self.now.seconds)
 
 

@@ -7,14 +7,12 @@ comes back, and one process reads the file as a whole and says so.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator, Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
-
-from OCP.Standard import Standard_Failure
 
 from cadpanel.brep.cutting.raw_panels import PANELS_AT_ONCE, RawReference, all_of, mended_products
 from cadpanel.brep.files.catalogue import format_of
@@ -24,12 +22,11 @@ from cadpanel.brep.files.names import call_panels
 from cadpanel.brep.files.step import STEP, read_plain_products
 from cadpanel.brep.files.step_parts import StepPart, cut_in_two
 from cadpanel.brep.files.text_check import check_step_text, contents
-from cadpanel.brep.isolation.beside import POSSIBLE, Channel, Lost, beside
+from cadpanel.brep.isolation.beside import POSSIBLE, Channel, beside
 from cadpanel.brep.isolation.processors import processors
 from cadpanel.brep.isolation.requests import SECONDS_TO_WORK
 from cadpanel.brep.isolation.time_limit import limit_time
 from cadpanel.brep.skin.panel_cleanup import Mended
-from cadpanel.errors import CadpanelError
 from cadpanel.reference.settings import ReferenceSettings
 
 WORTHWHILE_BYTES = 8_000_000
@@ -61,8 +58,13 @@ class _Told:
     origin: Place | None
 
 
-def products_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
+def products_by_two(path: Path, how: ReferenceSettings, go_on: Callable[[], None]) -> RawReference | None:
     """Read a reference whose products are the panels, if two processes can read it, and it is large enough to pay.
+
+    Args:
+        path: the file.
+        how: the settings.
+        go_on: called once both halves are read; what is found wrong after that leaves the file to one process, too.
 
     Returns:
         None where it is read as a whole; that says, too, what is wrong with a file that is refused.
@@ -70,8 +72,8 @@ def products_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
     if how.way is not None or how.faces is not None or how.millimetres is not None or not _is_worthwhile(path):
         return None
     try:
-        return _read_by_two(path, how)
-    except (CadpanelError, Standard_Failure, Lost, ValueError, OSError):
+        return _read_by_two(path, how, go_on)
+    except Exception:  # noqa: BLE001 - whatever it is, one process meets it again, or does without what was missing
         return None
 
 
@@ -82,7 +84,7 @@ def _is_worthwhile(path: Path) -> bool:
         return False
 
 
-def _read_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
+def _read_by_two(path: Path, how: ReferenceSettings, go_on: Callable[[], None]) -> RawReference | None:
     if format_of(path) is not STEP:
         return None
     text = contents(path)
@@ -105,6 +107,7 @@ def _read_by_two(path: Path, how: ReferenceSettings) -> RawReference | None:
         other = cast(_Said, channel.hear())
         if other.unit != own.said.unit:
             return None
+        go_on()
         names = call_panels([*own.said.called, *other.called])
         origin = origin_within([own.said.extent, other.extent], path.name)
         count = len(own.said.called)
@@ -166,9 +169,8 @@ class _Half:
 
 @contextmanager
 def _as_file(pieces: Sequence[bytes]) -> Iterator[Path]:
-    """A file in memory, of which nothing is left, however this process ends."""
-    handle = os.memfd_create("cadpanel")
-    with os.fdopen(handle, "wb") as file:
+    """A file without a name, of which nothing is left, however this process ends."""
+    with tempfile.TemporaryFile() as file:  # not in memory: not every Python has files there
         file.writelines(pieces)
         file.flush()
-        yield Path(f"/proc/self/fd/{handle}")
+        yield Path(f"/proc/self/fd/{file.fileno()}")

@@ -2,7 +2,8 @@
 
 The text is cut as it stands: what a product needs goes with it, what all need goes with both. Only the file's own
 references are followed, so a file is cut where every instance is known to belong to products on one side, or to say
-nothing that matters beside names and shapes; any other is left whole.
+nothing that matters beside names and shapes; any other is left whole. So is one whose products share a shape, or a part
+of one: the kernel then makes one of it, where two files would give two.
 """
 
 from __future__ import annotations
@@ -29,6 +30,21 @@ UNHEARD = (
     *(b"APPLICATION_PROTOCOL_DEFINITION(", b"APPLICATION_CONTEXT("),
 )
 """Lists of what is drawn, and what is said of the file: neither names nor shapes hang on them."""
+OF_SEVERAL_KINDS = (
+    *(b"GEOMETRIC_REPRESENTATION_CONTEXT(", b"CONVERSION_BASED_UNIT(", b"NAMED_UNIT(", b"SI_UNIT(", b"LENGTH_UNIT("),
+    *(b"PLANE_ANGLE_UNIT(", b"SOLID_ANGLE_UNIT(", b"AREA_UNIT(", b"VOLUME_UNIT(", b"MASS_UNIT("),
+)
+SHARED = (
+    *(b"APPLICATION_CONTEXT(", b"PRODUCT_CONTEXT(", b"PRODUCT_DEFINITION_CONTEXT(", b"REPRESENTATION_CONTEXT("),
+    *(b"MECHANICAL_CONTEXT(", b"DESIGN_CONTEXT(", b"GENERAL_PROPERTY("),
+    *(b"CARTESIAN_POINT(", b"DIRECTION(", b"VECTOR(", b"AXIS1_PLACEMENT(", b"AXIS2_PLACEMENT_"),
+    *(b"MEASURE_WITH_UNIT(", b"LENGTH_MEASURE_WITH_UNIT(", b"PLANE_ANGLE_MEASURE_WITH_UNIT("),
+    *(b"UNCERTAINTY_MEASURE_WITH_UNIT(", b"DIMENSIONAL_EXPONENTS(", b"DERIVED_UNIT"),
+    *(b"COLOUR_RGB(", b"DRAUGHTING_PRE_DEFINED_", b"PRESENTATION_STYLE_", b"FILL_AREA_STYLE"),
+    *(b"SURFACE_STYLE_", b"SURFACE_SIDE_STYLE(", b"CURVE_STYLE", b"POINT_STYLE("),
+    *(bracket + kind for bracket in (b"(", b"( ") for kind in OF_SEVERAL_KINDS),
+)
+"""How that begins which both parts may hold: contexts, units, styles, and points and directions, which are copied."""
 ONE, OTHER, BOTH = 1, 2, 3
 SPARSEST, FEW = 10, 1000
 """Numbers of instances reach no farther than so many times their count, and so many more."""
@@ -77,9 +93,9 @@ def cut_in_two(text: bytes, groups: int) -> Parts | None:
     if not 0 < first < len(products):
         return None
     sides = _sides(found, products[:first], products[first:])
-    loose = found.words[sides == 0].tolist()
-    if not all(text.startswith(UNHEARD, word) for word in loose) or (sides[products] == BOTH).any():
-        return None
+    for side, harmless in ((0, UNHEARD), (BOTH, SHARED)):
+        if not all(text.startswith(harmless, word) for word in found.words[sides == side].tolist()):
+            return None
     counts = (first, len(products) - first)
     parts = [
         StepPart(pieces=_pieces(text, found, (sides & side) > 0), products=count)
@@ -154,7 +170,9 @@ def _instances(text: bytes, start: int, stop: int) -> _Instances | None:
     names = numbers[own]
     if (data[equals] != _EQUALS).any() or (numbers < 0).any() or names.max() >= SPARSEST * len(names) + FEW:
         return None
-    places = np.full(int(max(names.max(), numbers.max())) + 1, -1, dtype=np.int32)
+    if numbers.max() > names.max():
+        return None
+    places = np.full(int(names.max()) + 1, -1, dtype=np.int32)
     places[names] = np.arange(len(names))
     refers = np.ones(len(marks), dtype=bool)
     refers[own] = False

@@ -16,7 +16,6 @@ import os
 import pickle
 import queue
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -54,6 +53,10 @@ class Interpreter:
         Raises:
             RuntimeError: it was killed for good.
         """
+        with self._lock:
+            return self._started()
+
+    def _started(self) -> Process:
         if self._killed:
             raise RuntimeError("the second interpreter was killed")
         if self._process is None or self._process.poll() is not None:
@@ -84,27 +87,37 @@ class Interpreter:
                 happens, the interpreter dies over it, or does not end in time.
         """
         with self._lock:
-            process = self.start()
-            assert process.stdin is not None
-            stages = iter(request.stages)
-            stage = next(stages)
+            process = self._started()
             try:
-                _write(process.stdin, framed(request))
-                while not (answer := self._frame(time.monotonic() + stage.seconds)):
-                    stage = next(stages, stage)
-            except TimeoutError:
-                raise stage.refusal(
-                    f"'{stage.file}' keeps the CAD kernel busy for more than {stage.seconds:.0f} s: {stage.remedy}."
-                ) from None
-            except (EOFError, OSError):
-                raise stage.refusal(f"'{stage.file}' makes {self._last_words(process)}: {stage.crashed}.") from None
-            finally:
-                if sys.exc_info()[0] is not None:  # an interrupt, too, leaves an answer that nobody waits for
-                    self._end()
+                answer = self._answer(process, request)
+            except BaseException:  # an interrupt, too, leaves an answer that nobody waits for
+                self._end()
+                raise
         found: object = pickle.loads(answer)
         if isinstance(found, Exception):
             raise found
         return found
+
+    def _answer(self, process: Process, request: Request) -> bytes:
+        """Hand over a request and wait for what comes back.
+
+        Raises:
+            CadpanelError: the interpreter dies over it, or does not end in time.
+        """
+        assert process.stdin is not None
+        stages = iter(request.stages)
+        stage = next(stages)
+        try:
+            _write(process.stdin, framed(request))
+            while not (answer := self._frame(time.monotonic() + stage.seconds)):
+                stage = next(stages, stage)
+        except TimeoutError:
+            raise stage.refusal(
+                f"'{stage.file}' keeps the CAD kernel busy for more than {stage.seconds:.0f} s: {stage.remedy}."
+            ) from None
+        except (EOFError, OSError):
+            raise stage.refusal(f"'{stage.file}' makes {self._last_words(process)}: {stage.crashed}.") from None
+        return answer
 
     def _frame(self, deadline: float) -> bytes:
         """The next frame without its length: empty where the next stage begins.
@@ -230,8 +243,9 @@ def _copy_of(original: Interpreter) -> Copy:
     stage = Stage(file="a copy", doing="copying", seconds=SECONDS_TO_READ)
     within = Path(__file__).parent
     try:
-        process = original.ask(Request(work="copy", folder=within, path=within, argument=ends, stages=(stage,)))
-        return Copy(cast(int, process), requests, answers)
+        asked = Request(work="copy", folder=within, path=within, argument=ends, stages=(stage,))
+        process = cast(int, original.ask(asked))
+        return Copy(process, os.pidfd_open(process), requests, answers)
     except BaseException:
         os.close(requests)
         os.close(answers)

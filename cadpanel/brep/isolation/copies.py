@@ -7,6 +7,7 @@ them by the numbers that they have there, which Linux allows to processes of the
 
 from __future__ import annotations
 
+import math
 import os
 import select
 import signal
@@ -19,7 +20,19 @@ from typing import BinaryIO, NamedTuple
 
 from cadpanel.brep.isolation.beside import POSSIBLE, let_go_of_all_but
 
-COPYABLE = POSSIBLE and hasattr(os, "pidfd_open")
+
+def _tells_of_an_end() -> bool:
+    """Whether the system tells a process of the end of one that it has not made: older ones and some boxes do not."""
+    if not hasattr(os, "pidfd_open"):
+        return False
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except OSError:
+        return False
+    return True
+
+
+COPYABLE = POSSIBLE and _tells_of_an_end()
 Serve = Callable[[BinaryIO, BinaryIO], None]
 """Answers requests, one after the other, until none comes."""
 _COPIES: list[int] = []
@@ -80,14 +93,10 @@ class Copy:
         stdin, stdout: what it hears and says.
     """
 
-    def __init__(self, process: int, requests: int, answers: int) -> None:
-        """Take over the other ends of the pipes.
-
-        Raises:
-            OSError: it has ended already.
-        """
+    def __init__(self, process: int, handle: int, requests: int, answers: int) -> None:
+        """Take over what tells of its end, and the other ends of the pipes."""
         self.pid = process
-        self._handle = os.pidfd_open(process)
+        self._handle = handle
         self.stdin, self.stdout = os.fdopen(requests, "wb", 0), os.fdopen(answers, "rb", 0)
 
     def __del__(self) -> None:
@@ -114,4 +123,6 @@ class Copy:
             signal.pidfd_send_signal(self._handle, signal.SIGKILL)
 
     def _ended(self, seconds: float | None) -> int | None:
-        return -signal.SIGKILL if select.select([self._handle], [], [], seconds)[0] else None
+        poll = select.poll()  # not select, for which no handle may be 1024 or more
+        poll.register(self._handle, select.POLLIN)
+        return -signal.SIGKILL if poll.poll(None if seconds is None else math.ceil(1000.0 * seconds)) else None

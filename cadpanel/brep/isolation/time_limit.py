@@ -24,10 +24,9 @@ def limit_time(seconds: float) -> None:
         faulthandler.dump_traceback_later(seconds, exit=True)
         return
     used = resource.getrusage(resource.RUSAGE_SELF)
-    soft = used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1)
+    soft = math.ceil(used.ru_utime + used.ru_stime + seconds * (os.cpu_count() or 1))
     hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
-    if hard == resource.RLIM_INFINITY or soft < hard:
-        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(soft), hard))
+    resource.setrlimit(resource.RLIMIT_CPU, (soft if hard == resource.RLIM_INFINITY else min(soft, hard), hard))
 
 
 def stop_limit() -> None:

@@ -124,7 +124,7 @@ class Helper:
         self._reader = ThreadPoolExecutor(max_workers=1)
         self._begun: tuple[Path, Future[list[ShapeFacts]]] | None = None
         self._clerk.submit(interpreter.start)
-        self._opened: tuple[Path, Future[int]] | None = None
+        self._opened: tuple[Path | None, Future[int]] | None = None
 
     def open(self, panels: Path) -> Future[int]:
         """Let the guarded interpreter read the file of panels, from now on."""
@@ -134,7 +134,8 @@ class Helper:
 
     def take_opened(self, panels: Path) -> Future[int]:
         """The same for who inspects it now: whoever asks again has it read again."""
-        opened, self._opened = self.open(panels), None
+        opened = self.open(panels)
+        self._opened = None, opened  # still to be ended, if it is not done by then
         return opened
 
     def begin(self, skins: Path) -> Future[list[ShapeFacts]]:

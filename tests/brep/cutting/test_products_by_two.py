@@ -1,5 +1,6 @@
 """A file that two processes read gives what one finds, digit for digit, or is left to one."""
 
+import io
 import os
 import signal
 from pathlib import Path
@@ -7,10 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cadpanel.brep import server
 from cadpanel.brep.cutting import products_by_two as by_two
 from cadpanel.brep.cutting import raw_panels as whole
 from cadpanel.brep.files.loading import load_reference
 from cadpanel.brep.files.step import read_plain_products
+from cadpanel.brep.isolation import requests
 from cadpanel.brep.isolation.beside import POSSIBLE
 from cadpanel.reference.outline import find_outline
 from cadpanel.reference.settings import ReferenceSettings
@@ -27,6 +30,10 @@ def every_file(monkeypatch):
     monkeypatch.setattr(by_two, "processors", lambda: 2)
     for module in (by_two, whole):
         monkeypatch.setattr(module, "PANELS_AT_ONCE", 2)
+
+
+def read_by_two(path, how=HOW, go_on=lambda: None):
+    return by_two.products_by_two(path, how, go_on)
 
 
 def read_whole(path):
@@ -59,7 +66,7 @@ def assert_same(found, wanted):
 @pytest.mark.parametrize("name", ["kai_tak_nw", "kai_tak_se_east", "kai_tak_se_south"])
 def test_two_find_what_one_finds(name):
     path = FIXTURES / f"{name}.step"
-    assert_same(by_two.products_by_two(path, HOW), read_whole(path))
+    assert_same(read_by_two(path), read_whole(path))
 
 
 def changed(tmp_path, *changes):
@@ -74,7 +81,7 @@ def changed(tmp_path, *changes):
 
 def test_names_are_told_apart_over_both_halves(tmp_path):
     path = changed(tmp_path, *((f"'{names[0]}'", "'one name'") for names in [[name] for name in panel_names()]))
-    assert_same(by_two.products_by_two(path, HOW), read_whole(path))
+    assert_same(read_by_two(path), read_whole(path))
 
 
 def panel_names():
@@ -84,7 +91,7 @@ def panel_names():
 def test_a_model_far_away_is_moved_as_a_whole(tmp_path, monkeypatch):
     monkeypatch.setattr("cadpanel.brep.files.loading.FAR", 1.0)
     path = changed(tmp_path)
-    found = by_two.products_by_two(path, HOW)
+    found = read_by_two(path)
     assert_same(found, read_whole(path))
     assert found is not None
     assert any(found.origin)
@@ -92,15 +99,16 @@ def test_a_model_far_away_is_moved_as_a_whole(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("old", ["ADVANCED_FACE", "#20", "LENGTH_UNIT()"])
 def test_a_file_with_a_fault_is_left_to_one(tmp_path, old):
-    assert by_two.products_by_two(changed(tmp_path, (old, f"X{old}")), HOW) is None
+    assert read_by_two(changed(tmp_path, (old, f"X{old}"))) is None
 
 
-def test_a_half_that_is_lost_leaves_the_file_to_one(monkeypatch):
+@pytest.mark.parametrize("error", [ValueError, MemoryError, AttributeError])
+def test_a_half_that_fails_however_leaves_the_file_to_one(monkeypatch, error):
     def fails(*_):
-        raise ValueError("no half")
+        raise error("no half")
 
     monkeypatch.setattr(by_two, "mended_products", fails)
-    assert by_two.products_by_two(FIXTURES / "kai_tak_nw.step", HOW) is None
+    assert read_by_two(FIXTURES / "kai_tak_nw.step") is None
 
 
 def test_the_other_process_crashing_leaves_the_file_to_one(monkeypatch):
@@ -112,15 +120,56 @@ def test_the_other_process_crashing_leaves_the_file_to_one(monkeypatch):
         return read(path, count)
 
     monkeypatch.setattr(by_two, "read_plain_products", crashes)
-    assert by_two.products_by_two(FIXTURES / "kai_tak_nw.step", HOW) is None
+    assert read_by_two(FIXTURES / "kai_tak_nw.step") is None
+
+
+def test_two_read_under_a_python_that_knows_no_files_in_memory(monkeypatch):
+    monkeypatch.delattr(os, "memfd_create", raising=False)
+    path = FIXTURES / "kai_tak_nw.step"
+    assert_same(read_by_two(path), read_whole(path))
+
+
+def test_the_work_begins_once_both_halves_are_read(monkeypatch):
+    happened = []
+    work = whole.mended_products
+
+    def noted(*how):
+        happened.append("work")
+        return work(*how)
+
+    monkeypatch.setattr(by_two, "mended_products", noted)
+    assert read_by_two(FIXTURES / "kai_tak_nw.step", go_on=lambda: happened.append("go on")) is not None
+    assert happened == ["go on", "work"]
+
+
+def test_a_file_that_two_cannot_read_is_still_being_read(tmp_path):
+    told = []
+    path = changed(tmp_path, ("ADVANCED_FACE", "XADVANCED_FACE"))
+    assert read_by_two(path, go_on=lambda: told.append("go on")) is None
+    assert not told
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_whoever_asked_hears_once_that_the_work_begins(monkeypatch, fails):
+    monkeypatch.chdir(FIXTURES)
+    limits: list[float] = []
+    answers = io.BytesIO()
+    monkeypatch.setattr(server, "limit_time", limits.append)
+    if fails:
+        monkeypatch.setattr(by_two, "all_of", lambda _: None)
+    path = FIXTURES / "kai_tak_nw.step"
+    found = server.answer(requests.work_request("panels", path, HOW), answers)
+    assert answers.getvalue() == requests.NEXT_STAGE
+    assert limits == [requests.seconds_to_read(path), requests.SECONDS_TO_WORK]
+    assert_same(found, read_whole(path))
 
 
 @pytest.mark.parametrize("how", [{"divide": 3}, {"unit": "cm"}, {"faces": "all"}])
 def test_what_is_asked_beside_products_is_for_one(how):
-    assert by_two.products_by_two(FIXTURES / "kai_tak_nw.step", ReferenceSettings(**how)) is None
+    assert read_by_two(FIXTURES / "kai_tak_nw.step", ReferenceSettings(**how)) is None
 
 
 def test_a_small_file_and_one_that_is_not_there_are_for_one(monkeypatch):
-    assert by_two.products_by_two(FIXTURES / "missing.step", HOW) is None
+    assert read_by_two(FIXTURES / "missing.step") is None
     monkeypatch.setattr(by_two, "WORTHWHILE_BYTES", 10**9)
-    assert by_two.products_by_two(FIXTURES / "kai_tak_nw.step", HOW) is None
+    assert read_by_two(FIXTURES / "kai_tak_nw.step") is None

@@ -4,6 +4,8 @@ import os
 import pickle
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,11 +65,49 @@ def test_crash_of_the_reader_is_one_sentence_and_the_next_file_is_read(model, mo
     process = client.READER.start()
     process.kill()
     process.wait()
-    monkeypatch.setattr(client.READER, "start", lambda: process)
+    monkeypatch.setattr(client.READER, "_started", lambda: process)
     with pytest.raises(ReferenceFileError, match=r"'model.brep' makes the CAD kernel crash: it is damaged; repair"):
         survey(model)
     monkeypatch.undo()
     assert survey(model).faces
+
+
+def test_who_asks_while_an_error_is_seen_to_keeps_the_reader(model):
+    survey(model)
+    process = client.READER.start().pid
+    try:
+        raise ValueError
+    except ValueError:
+        survey(model)
+    assert client.READER.start().pid == process
+
+
+@pytest.mark.parametrize("broken_off_by", [KeyboardInterrupt, SystemExit, MemoryError])
+def test_a_reader_whose_answer_nobody_waits_for_is_ended(model, monkeypatch, broken_off_by):
+    def breaks_off(_):
+        raise broken_off_by
+
+    process = client.READER.start()
+    monkeypatch.setattr(client.READER, "_frame", breaks_off)
+    with pytest.raises(broken_off_by):
+        survey(model)
+    assert process.poll() is not None
+    monkeypatch.undo()
+
+
+def test_threads_that_start_it_at_once_start_one(monkeypatch):
+    one, begun, started = client.Interpreter(), client.Interpreter._begun, []
+
+    def slowly(interpreter):
+        time.sleep(0.1)
+        started.append(begun(interpreter))
+        return started[-1]
+
+    monkeypatch.setattr(client.Interpreter, "_begun", slowly)
+    with ThreadPoolExecutor(max_workers=3) as threads:
+        found = list(threads.map(lambda _: one.start(), range(3)))
+    one.stop()
+    assert found == started * 3
 
 
 def test_reader_that_does_not_end_is_stopped(model, monkeypatch):

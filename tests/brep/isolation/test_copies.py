@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import fcntl
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -11,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from cadpanel.brep.isolation import client
+from cadpanel.brep.isolation import client, copies
 from cadpanel.brep.isolation.copies import COPYABLE, Copy
 from cadpanel.brep.isolation.requests import Request, Stage
 from cadpanel.errors import ReferenceFileError
@@ -22,6 +25,7 @@ pytestmark = [
     pytest.mark.usefixtures("forked_readers"),
 ]
 HERE = Path(__file__).parent
+SELECTABLE = 1024  # handles that fit in what `select` is told
 
 # A process that has a copy made, lets it work for long, and is killed.
 KILLED = """
@@ -81,7 +85,7 @@ def test_a_copy_that_dies_over_a_request_is_one_sentence(copied, monkeypatch):
     first = copy_of(copied)
     os.kill(first.pid, signal.SIGKILL)
     first.wait(10.0)
-    monkeypatch.setattr(copied, "start", lambda: first)
+    monkeypatch.setattr(copied, "_started", lambda: first)
     with pytest.raises(ReferenceFileError, match=r"'nothing' makes the CAD kernel crash"):
         copied.ask(closing())
 
@@ -119,6 +123,38 @@ def test_where_no_copy_can_be_made_one_is_started(copied, monkeypatch):
     killed.kill()
     monkeypatch.setattr(copied, "_original", killed)
     assert isinstance(copied.start(), subprocess.Popen)
+
+
+def no_handle(_):
+    raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
+
+
+def test_where_the_system_does_not_tell_of_its_end_one_is_started_without_a_word(copied, monkeypatch):
+    unheard: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", unheard.append)
+    monkeypatch.setattr(os, "pidfd_open", no_handle)
+    assert isinstance(copied.start(), subprocess.Popen)
+    assert not copies._tells_of_an_end()
+    assert unheard == []
+
+
+def test_a_copy_is_waited_for_by_any_handle():
+    """Also by one beyond those that `select` takes, as a program with many open files has."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (before[1], before[1]))
+    try:
+        handle = fcntl.fcntl(low := os.pidfd_open(os.getpid()), fcntl.F_DUPFD_CLOEXEC, SELECTABLE)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+    os.close(low)
+    answers, requests = os.pipe()
+    one = Copy(os.getpid(), handle, requests, answers)
+    assert handle >= SELECTABLE
+    assert one.poll() is None
+    with pytest.raises(subprocess.TimeoutExpired):
+        one.wait(0.01)
+    one.stdin.close()
+    one.stdout.close()
 
 
 def test_no_pipe_is_left_open(copied):

@@ -308,8 +308,9 @@ def test_files_that_are_read_ahead_give_the_same_and_are_read_again_for_who_asks
         assert not delivery.certify(helper=helper).holds
 
 
+@pytest.mark.parametrize("taken", [False, True])
 @pytest.mark.parametrize("late", [0.0, 0.3])
-def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monkeypatch, late):
+def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monkeypatch, late, taken):
     client.stop_reader()
     ask = client.Interpreter.ask
 
@@ -323,6 +324,8 @@ def test_a_file_that_is_read_ahead_for_nobody_is_given_up(delivery, forks, monke
     with parallel.second_interpreter(parallel.WORTHWHILE_PANELS) as helper:
         assert helper is not None
         opened = helper.open(delivery.panels_step)
+        if taken:  # by one that is stopped while it waits
+            assert helper.take_opened(delivery.panels_step) is opened
     with pytest.raises(DeliveryError):
         opened.result()
     client.stop_reader()

@@ -110,7 +110,7 @@ def _cut_panels(model: Model, settings: ReferenceSettings, drawn: Drawn | None) 
         select_faces(model, settings.faces), model.source, settings.seam_tolerance, chosen=settings.faces is not None
     )
     require_reach([face.samples for face in skin], model.source)
-    left_out = None if settings.faces is None else _names_left_out(model, [face.number for face in skin])
+    left_out = (settings.faces and _names_left_out(model, [face.number for face in skin])) or None
     surfaces, gaps = surfaces_of(skin, model.source, settings.seam_tolerance, left_out=left_out)
     cut = cut_surfaces(model, surfaces, settings, drawn)
     shapes = [NamedShape(panel.name, compound_of(panel.faces)) for panel in cut.panels]

@@ -33,6 +33,7 @@ from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
 from cadpanel.cli.view import view
 from cadpanel.errors import CadpanelError, ProofError, SettingsError
+from cadpanel.garbage import own_process
 
 EXIT_NOT_HELD = 1
 """The command ran, but a tolerance or a proof does not hold."""
@@ -100,6 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
         sentence on stderr; 3 something that was not foreseen; 130 interrupted; 143 killed.
     """
+    own_process()
     forgive_encodings()
     for gone in _goodbyes():
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored

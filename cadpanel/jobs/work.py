@@ -76,6 +76,9 @@ def work(task: Task, contents: Sequence[Content | bytes], tell: Tell, *, side_by
         tell: told of the steps.
         side_by_side: how many tasks are worked at on this machine at once, which share its processors. What is made
             does not depend on it.
+
+    Raises:
+        KeyboardInterrupt, SystemExit: somebody ends the program, whatever error that comes out as.
     """
     if task.program != program_sum():
         said = f"the worker has another cadpanel, {program()['version']}, or other packages: install one everywhere"

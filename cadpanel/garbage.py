@@ -10,6 +10,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from threading import Event
 
 
 @contextmanager
@@ -24,8 +25,21 @@ def garbage_left() -> Iterator[None]:
             gc.enable()
 
 
-@cache
+_OWN = Event()
+
+
+def own_process() -> None:
+    """Say that this process is the program's, or a worker's: what it holds is of no host who calls it."""
+    _OWN.set()
+
+
 def keep_what_is_loaded() -> None:
-    """Look for garbage no more among what there is now, once, when all is loaded."""
+    """Look for garbage no more among what there is now, once, when all is loaded, in a process of our own."""
+    if _OWN.is_set():
+        _freeze()
+
+
+@cache
+def _freeze() -> None:
     gc.collect()
     gc.freeze()

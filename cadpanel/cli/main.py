@@ -15,6 +15,7 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from cadpanel.causes import stopped_by
 from cadpanel.cli.compare import compare
 from cadpanel.cli.diff import diff
 from cadpanel.cli.examples import epilog
@@ -32,6 +33,7 @@ from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
 from cadpanel.cli.view import view
 from cadpanel.errors import CadpanelError, ProofError, SettingsError
+from cadpanel.garbage import own_process
 
 EXIT_NOT_HELD = 1
 """The command ran, but a tolerance or a proof does not hold."""
@@ -99,6 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code: 0 all is well; 1 the command ran, but a tolerance or a proof does not hold; 2 refused, with one
         sentence on stderr; 3 something that was not foreseen; 130 interrupted; 143 killed.
     """
+    own_process()
     forgive_encodings()
     for gone in _goodbyes():
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored
@@ -118,15 +121,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refuse(str(error))
     except KeyboardInterrupt:
         status = EXIT_INTERRUPTED
-    except ImportError as error:
-        # While the kernel's binding loads, an interrupt or a kill comes out as the failure of its import.
-        if isinstance(error.__cause__, SystemExit):
-            return EXIT_TERMINATED
-        if not isinstance(error.__cause__, KeyboardInterrupt):
-            return _unexpected(error)
-        status = EXIT_INTERRUPTED
     except Exception as error:  # noqa: BLE001 - the last resort: whoever sits there is told where the details are
-        return _unexpected(error)
+        stopped = stopped_by(error)
+        if stopped is None:
+            return _unexpected(error)
+        if isinstance(stopped, SystemExit):
+            return EXIT_TERMINATED
+        status = EXIT_INTERRUPTED
     if status == EXIT_INTERRUPTED:
         complain("Interrupted.\n")
         # An interrupt that went through Python text run by an extension, as while the kernel's binding loads, is kept

@@ -93,9 +93,9 @@ def region_lines(of: int, *, quiet: bool, told: bool) -> Iterator[RegionLines]:
     console = Console(stderr=True)
     progress = Progress(
         SpinnerColumn(),
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),  # names of users hold brackets
         TimeElapsedColumn(),
-        TextColumn("[dim]{task.fields[detail]}"),
+        TextColumn("{task.fields[detail]}", style="dim", markup=False),
         console=console,
         disable=quiet or told or not console.is_terminal,
     )

@@ -165,7 +165,7 @@ def steps(*, quiet: bool, told: bool = False) -> Iterator[Steps]:
         TextColumn("{task.description}"),
         BarColumn(bar_width=24),
         TimeElapsedColumn(),
-        TextColumn("[dim]{task.fields[detail]}"),
+        TextColumn("{task.fields[detail]}", style="dim", markup=False),  # names of files hold brackets
         console=console,
         disable=quiet or told or not console.is_terminal,
     )

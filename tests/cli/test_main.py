@@ -35,6 +35,13 @@ def test_a_command_that_ends_well_exits_with_0(run: Callable[..., int]) -> None:
     assert run(lambda: None) == 0
 
 
+def test_the_program_says_that_its_process_is_its_own(run: Callable[..., int], monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+    monkeypatch.setattr(program, "own_process", lambda: said.append("own"))
+    run(lambda: said.append("work"))
+    assert said == ["own", "work"]
+
+
 def test_a_refusal_is_one_sentence_and_exits_with_2(
     run: Callable[..., int], capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import io
 import threading
 
+import pytest
 from rich.console import Console
 from rich.progress import Progress
 
-from cadpanel.cli.steps import WrittenSteps
+from cadpanel.cli.steps import WrittenSteps, steps
 
 
 class Heard(io.StringIO):
@@ -59,3 +60,13 @@ def test_a_short_fit_tells_none_of_its_rounds() -> None:
     shown.solving("Fit all at once", 1, 1.5, 7.25)
     shown.close()
     assert stream.getvalue() == ""
+
+
+@pytest.mark.parametrize("name", ["roof [north].step", "roof [/b].step", "[bold].step"])
+def test_brackets_in_names_of_files_are_no_markup(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    told = io.StringIO()
+    terminal = Console(file=told, force_terminal=True, color_system=None, width=200)
+    monkeypatch.setattr("cadpanel.cli.steps.Console", lambda **_: terminal)
+    with steps(quiet=False) as shown:
+        shown.begin("Read reference", name)
+    assert name in told.getvalue()

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -158,18 +158,14 @@ def test_the_second_interrupt_stops_it_and_more_disturb_nothing(
 MANY = "\n".join(f"R{number} = {{thickness = {1 + 0.1 * number:g}}}" for number in range(8))
 
 
-@thorough
-@pytest.mark.parametrize(("workers", "times"), [(1, 4), (2, 1), (2, 4)])
-def test_an_interrupt_of_a_whole_terminal_leaves_the_regions_that_are_done(
-    tmp_path: Path, workers: int, times: int
-) -> None:
-    reference(tmp_path)
-    job(tmp_path, MANY)
-    out = tmp_path / "out"
-    words = [*PROGRAM, "run", "job.toml", "--out", "out", "--cache", "cache", "--workers", str(workers)]
+@contextmanager
+def run_of_many(folder: Path, *more: str) -> Iterator[subprocess.Popen[str]]:
+    """A job of many regions that runs as in a terminal."""
+    reference(folder)
+    job(folder, MANY)
     with subprocess.Popen(
-        words,
-        cwd=tmp_path,
+        [*PROGRAM, "run", "job.toml", "--out", "out", "--cache", "cache", *more],
+        cwd=folder,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
@@ -177,16 +173,31 @@ def test_an_interrupt_of_a_whole_terminal_leaves_the_regions_that_are_done(
         start_new_session=True,
     ) as process:
         try:
-            give_up = time.monotonic() + 120.0
-            while not list(out.glob("R?")):
-                assert time.monotonic() < give_up
-                time.sleep(0.05)
-            for _ in range(times):
-                os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-                time.sleep(0.02)
-            _, err = process.communicate(timeout=60)
+            yield process
         finally:
             process.kill()
+
+
+def until(found: Callable[[], object]) -> None:
+    """Wait for something."""
+    give_up = time.monotonic() + 120.0
+    while not found():
+        assert time.monotonic() < give_up
+        time.sleep(0.05)
+
+
+@thorough
+@pytest.mark.parametrize(("workers", "times"), [(1, 4), (2, 1), (2, 4)])
+def test_an_interrupt_of_a_whole_terminal_leaves_the_regions_that_are_done(
+    tmp_path: Path, workers: int, times: int
+) -> None:
+    out = tmp_path / "out"
+    with run_of_many(tmp_path, "--workers", str(workers)) as process:
+        until(lambda: list(out.glob("R?")))
+        for _ in range(times):
+            os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+            time.sleep(0.02)
+        _, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
     assert err.splitlines()[-1] == "Interrupted."
     assert "Traceback" not in err
@@ -195,3 +206,37 @@ def test_an_interrupt_of_a_whole_terminal_leaves_the_regions_that_are_done(
     assert whole == {name for name, state in rows.items() if state == "made"}
     assert {state for name, state in rows.items() if name not in whole} == {"waiting"}
     assert not [name for name in whole if changed_files(out / name)]
+
+
+def begun_by(number: int) -> list[int]:
+    """The processes that one has begun."""
+    return [int(word) for path in Path(f"/proc/{number}/task").glob("*/children") for word in path.read_text().split()]
+
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="sees processes from outside as Linux tells of them")
+
+
+@linux
+@thorough
+def test_an_interrupt_while_workers_start_is_heeded(tmp_path: Path) -> None:
+    with run_of_many(tmp_path, "--workers", "2") as process:
+        until(lambda: len(begun_by(process.pid)) > 1)  # one watches over shared memory
+        begun = begun_by(process.pid)
+        os.killpg(process.pid, signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (130, "Interrupted.\n")
+    assert {row.state for row in read_summary(tmp_path / "out" / SUMMARY).rows} == {"waiting"}
+    until(lambda: not [number for number in begun if Path(f"/proc/{number}").exists()])
+
+
+@linux
+@thorough
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_run_is_ended_while_the_kernel_loads(tmp_path: Path, sent: signal.Signals, code: int) -> None:
+    with run_of_many(tmp_path) as process:
+        until(lambda: "OCP" in Path(f"/proc/{process.pid}/maps").read_text())
+        os.kill(process.pid, sent)
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == code, err
+    assert err.splitlines()[-1:] == (["Interrupted."] if code == 130 else [])
+    assert {row.state for row in read_summary(tmp_path / "out" / SUMMARY).rows} == {"waiting"}

@@ -36,6 +36,10 @@ CRASHED_ON_WINDOWS = 0xC0000000
 Process = subprocess.Popen[bytes] | Copy
 
 
+class Died(Exception):
+    """What a refusal is made of where the second interpreter has died over the file."""
+
+
 class Interpreter:
     """A second interpreter, started when it is first needed."""
 
@@ -116,7 +120,7 @@ class Interpreter:
                 f"'{stage.file}' keeps the CAD kernel busy for more than {stage.seconds:.0f} s: {stage.remedy}."
             ) from None
         except (EOFError, OSError):
-            raise stage.refusal(f"'{stage.file}' makes {self._last_words(process)}: {stage.crashed}.") from None
+            raise stage.refusal(f"'{stage.file}' makes {self._last_words(process)}: {stage.crashed}.") from Died()
         return answer
 
     def _frame(self, deadline: float) -> bytes:

@@ -1,11 +1,15 @@
-"""What workers that are started here load first: a terminal tells all processes of Ctrl-C, and one of them ends all."""
+"""Workers that are started here hear of no Ctrl-C: a terminal tells all processes of it, and one of them ends all."""
 
 from __future__ import annotations
 
 import signal
+import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+Begun = TypeVar("Begun")
 
 
 def dask_setup(_worker: object) -> None:
@@ -13,14 +17,25 @@ def dask_setup(_worker: object) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-@contextmanager
-def deaf() -> Iterator[None]:
-    """Hear of no Ctrl-C in the block, nor do processes that begin in it, until they are told otherwise."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+def begin_deaf(begun: Future[Begun], begin: Callable[[], Begun]) -> None:
+    """Call a function in a thread that hears of no Ctrl-C; what it gives or raises is told to whoever waits for it.
+
+    Nor do threads and processes that begin in it, where the system has masks of signals, which they inherit. So this
+    thread hears of it as ever, and may leave while that one goes on.
+    """
+    if sys.platform != "win32":
+        from multiprocessing import resource_tracker
+
+        resource_tracker.ensure_running()  # else it begins in that thread, and lifts the mask there
+
+    def run() -> None:
+        if sys.platform != "win32":
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        if not begun.set_running_or_notify_cancel():
+            return
+        try:
+            begun.set_result(begin())
+        except BaseException as error:  # noqa: BLE001 - whoever waits for it is told
+            begun.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()

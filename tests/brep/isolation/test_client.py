@@ -66,8 +66,11 @@ def test_crash_of_the_reader_is_one_sentence_and_the_next_file_is_read(model, mo
     process.kill()
     process.wait()
     monkeypatch.setattr(client.READER, "_started", lambda: process)
-    with pytest.raises(ReferenceFileError, match=r"'model.brep' makes the CAD kernel crash: it is damaged; repair"):
+    with pytest.raises(
+        ReferenceFileError, match=r"'model.brep' makes the CAD kernel crash: it is damaged; repair"
+    ) as told:
         survey(model)
+    assert isinstance(told.value.__cause__, client.Died)
     monkeypatch.undo()
     assert survey(model).faces
 

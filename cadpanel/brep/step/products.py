@@ -145,7 +145,7 @@ class StepFrame:
         return self._placement(place) if any(place) else self.origin
 
     def _placement(self, place: tuple[float, float, float]) -> int:
-        point = self._text.add(f"CARTESIAN_POINT('',({','.join(real(float(part)) for part in place)}))")
+        point = self._text.add(f"CARTESIAN_POINT('',({','.join(map(real, place))}))")
         z_axis = self._text.add("DIRECTION('',(0.,0.,1.))")
         x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
         return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
@@ -186,7 +186,7 @@ class StepFrame:
         """One style a colour, shared by all that wear it."""
         if color not in self._styles:
             add = self._text.add
-            rgb = add(f"COLOUR_RGB('',{','.join(real(float(part)) for part in color)})")
+            rgb = add(f"COLOUR_RGB('',{','.join(map(real, color))})")
             fill = add(f"FILL_AREA_STYLE_COLOUR('',#{rgb})")
             area = add(f"FILL_AREA_STYLE('',(#{fill}))")
             side = add(f"SURFACE_SIDE_STYLE('',(#{add(f'SURFACE_STYLE_FILL_AREA(#{area})')}))")

@@ -18,9 +18,11 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cadpanel.brep.building.sheet import build_panel, build_skin, build_solid, volume_of
+from cadpanel.brep.files.step_reader import read_document
 from cadpanel.brep.proof import boundary
 from cadpanel.brep.proof.inspection import boundary_of, inspect
-from cadpanel.brep.step.file import read_step_shapes, write_step
+from cadpanel.brep.step.file import read_step_shapes, write_assembly, write_step
+from cadpanel.brep.step.part_files import PartFile
 from cadpanel.brep.step.text import real, string
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.errors import DeliveryError, PanelError
@@ -288,3 +290,25 @@ def test_shapes_are_placed_in_the_assembly_and_keep_their_own_numbers(tmp_path, 
         assert other.valid
         assert np.array_equal(one.vertices, other.vertices)
         assert one.volume == other.volume
+
+
+@pytest.mark.parametrize("placed", [(0.0, 0.0, 0.0), (8.3e8, -2.1e8, 1000.0)])
+def test_the_kernels_reader_has_nothing_to_remark(tmp_path, panels, placed):
+    shapes = [(panel.name, build_solid(panel, 3.0), BLUE) for panel in panels[:2]]
+    write_step(tmp_path / "a.step", shapes, title="t", placed=placed)
+    write_assembly(tmp_path / "b.step", [PartFile(name="a", path="a.step", placed=placed)], title="b")
+    for file in ("a.step", "b.step"):
+        assert remarks(tmp_path / file) == []
+
+
+def remarks(path):
+    """What the kernel's reader warns of, or fails at."""
+    step, found = read_document(path, labels=True), []
+    checks = step.reader.Reader().WS().TransferReader().LastCheckList()
+    checks.Start()
+    while checks.More():
+        check = checks.Value()
+        found += [check.CWarning(index) for index in range(1, check.NbWarnings() + 1)]
+        found += [check.CFail(index) for index in range(1, check.NbFails() + 1)]
+        checks.Next()
+    return found

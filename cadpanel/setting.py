@@ -78,15 +78,21 @@ def setting(default: Value, *, option: Option, within: Range | None = None) -> V
 
 
 def check_ranges(settings: Any) -> None:
-    """Refuse settings of which a number is out of its range, in the order of the fields.
+    """Refuse settings of which a number is out of its range, in the order of the fields, and make all of one kind.
+
+    A whole number of millimetres, or one of NumPy's, is kept as the float that it is: what is written of it is the
+    same then.
 
     Raises:
         SettingsError: with one sentence that names the setting and its range.
     """
     for one in fields(settings):
         allowed = one.metadata.get(_RANGE)
+        value = getattr(settings, one.name)
         if allowed is not None:
-            allowed.check(getattr(settings, one.name))
+            allowed.check(value)
+        if allowed is not None and value is not None:
+            object.__setattr__(settings, one.name, int(value) if allowed.whole else float(value))
 
 
 def options_of(settings: type[Any]) -> Iterator[tuple[Field[Any], Option]]:

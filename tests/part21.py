@@ -109,6 +109,8 @@ _FORM_OF_CURVE = "UNSPECIFIED|POLYLINE_FORM|CIRCULAR_ARC|ELLIPTIC_ARC|PARABOLIC_
 _FORM_OF_SURFACE = "UNSPECIFIED|PLANE_SURF|CYLINDRICAL_SURF|CONICAL_SURF|RULED_SURF"
 _KNOTS = ".UNIFORM_KNOTS|UNSPECIFIED|QUASI_UNIFORM_KNOTS|PIECEWISE_BEZIER_KNOTS"
 
+_DEFINITIONS = "PRODUCT_DEFINITION|PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS"
+
 ENTITIES: dict[str, str] = {
     "APPLICATION_CONTEXT": "s",
     "APPLICATION_PROTOCOL_DEFINITION": "s s i #APPLICATION_CONTEXT",
@@ -118,8 +120,11 @@ ENTITIES: dict[str, str] = {
     "PRODUCT_RELATED_PRODUCT_CATEGORY": "s ?s 1(#PRODUCT)",
     "PRODUCT_DEFINITION_FORMATION": "s ?s #PRODUCT",
     "PRODUCT_DEFINITION": "s ?s #PRODUCT_DEFINITION_FORMATION #PRODUCT_DEFINITION_CONTEXT",
-    "PRODUCT_DEFINITION_SHAPE": "s ?s #PRODUCT_DEFINITION|NEXT_ASSEMBLY_USAGE_OCCURRENCE",
-    "NEXT_ASSEMBLY_USAGE_OCCURRENCE": "s s ?s #PRODUCT_DEFINITION #PRODUCT_DEFINITION ?s",
+    "PRODUCT_DEFINITION_WITH_ASSOCIATED_DOCUMENTS": (
+        "s ?s #PRODUCT_DEFINITION_FORMATION #PRODUCT_DEFINITION_CONTEXT 1(#DOCUMENT_FILE)"
+    ),
+    "PRODUCT_DEFINITION_SHAPE": f"s ?s #{_DEFINITIONS}|NEXT_ASSEMBLY_USAGE_OCCURRENCE",
+    "NEXT_ASSEMBLY_USAGE_OCCURRENCE": f"s s ?s #{_DEFINITIONS} #{_DEFINITIONS} ?s",
     "SHAPE_DEFINITION_REPRESENTATION": f"#PRODUCT_DEFINITION_SHAPE #{_SHAPES}",
     "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION": f"#{_RELATION} #PRODUCT_DEFINITION_SHAPE",
     "ITEM_DEFINED_TRANSFORMATION": "s ?s #AXIS2_PLACEMENT_3D #AXIS2_PLACEMENT_3D",
@@ -160,9 +165,12 @@ ENTITIES: dict[str, str] = {
         " #GEOMETRIC_REPRESENTATION_CONTEXT+PARAMETRIC_REPRESENTATION_CONTEXT+REPRESENTATION_CONTEXT"
     ),
     "UNCERTAINTY_MEASURE_WITH_UNIT": f"m:LENGTH_MEASURE #{_UNITS} s ?s",
-    "PROPERTY_DEFINITION": "s ?s #PRODUCT_DEFINITION|PRODUCT_DEFINITION_SHAPE|NEXT_ASSEMBLY_USAGE_OCCURRENCE",
+    "PROPERTY_DEFINITION": (
+        f"s ?s #{_DEFINITIONS}|PRODUCT_DEFINITION_SHAPE|NEXT_ASSEMBLY_USAGE_OCCURRENCE|DOCUMENT_FILE"
+    ),
     "PROPERTY_DEFINITION_REPRESENTATION": f"#PROPERTY_DEFINITION|GENERAL_PROPERTY #REPRESENTATION|{_SHAPES}",
-    "REPRESENTATION": f"s 1(#{_ITEMS}) #{_SPACE}",
+    "REPRESENTATION": f"s 1(#{_ITEMS}) #{_SPACE}|REPRESENTATION_CONTEXT",
+    "REPRESENTATION_CONTEXT": "s s",
     "MEASURE_REPRESENTATION_ITEM": f"s m:{_MEASURES} #{_UNITS}",
     "DESCRIPTIVE_REPRESENTATION_ITEM": "s s",
     "GENERAL_PROPERTY": "s s ?s",
@@ -178,6 +186,15 @@ ENTITIES: dict[str, str] = {
     "FILL_AREA_STYLE_COLOUR": "s #COLOUR_RGB",
     "COLOUR_RGB": "s r r r",
     "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION": f"s 1(#STYLED_ITEM|AXIS2_PLACEMENT_3D) #{_SPACE}",
+    "DOCUMENT_TYPE": "s",
+    "DOCUMENT_FILE": "s s ?s #DOCUMENT_TYPE s ?s",
+    "DOCUMENT_REPRESENTATION_TYPE": "s #DOCUMENT_FILE",
+    "IDENTIFICATION_ROLE": "s ?s",
+    "EXTERNAL_SOURCE": "t:IDENTIFIER|MESSAGE",
+    "APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT": "s #IDENTIFICATION_ROLE #EXTERNAL_SOURCE 1(#DOCUMENT_FILE)",
+    "APPLIED_DOCUMENT_REFERENCE": f"#DOCUMENT_FILE s 1(#{_DEFINITIONS})",
+    "OBJECT_ROLE": "s ?s",
+    "ROLE_ASSOCIATION": "#OBJECT_ROLE #APPLIED_DOCUMENT_REFERENCE",
 }
 COMPLEX: dict[str, dict[str, str]] = {
     _SPACE: {
@@ -205,7 +222,38 @@ COMPLEX: dict[str, dict[str, str]] = {
 
 
 def faults(instances: dict[str, Parts]) -> Iterator[str]:
-    """One sentence for everything that the table does not allow."""
+    """One sentence for everything that the table does not allow; where there is nothing, for every rule that is broken.
+
+    The rules are those of representation_relationship_with_transformation in part 43: its representations have
+    different contexts, and each has the item by which it is transformed. The schema is content with an item in any
+    representation of the same context; readers look among the representation's own.
+    """
+    found = list(_strange_values(instances))
+    yield from found or _broken_rules(instances)
+
+
+def _broken_rules(instances: dict[str, Parts]) -> Iterator[str]:
+    for name, parts in instances.items():
+        if "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION" not in parts:
+            continue
+        [operator] = parts["REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION"]
+        of_items = instances[str(operator.content)]["ITEM_DEFINED_TRANSFORMATION"][2:]
+        related = [_representation(instances, one) for one in parts["REPRESENTATION_RELATIONSHIP"][2:]]
+        if len({context for _, context in related}) < len(related):
+            yield f"{name}: both representations have the context {related[0][1]}"
+        for item, (items, _) in zip(of_items, related, strict=True):
+            if item not in items:
+                yield f"{name}: {item.content} is no item of the representation that it transforms"
+
+
+def _representation(instances: dict[str, Parts], reference: Value) -> tuple[list[Value], object]:
+    """The items of a representation, and the name of its context."""
+    [(_, items, context)] = instances[str(reference.content)].values()
+    assert isinstance(items.content, list)
+    return items.content, context.content
+
+
+def _strange_values(instances: dict[str, Parts]) -> Iterator[str]:
     types = {name: "+".join(parts) for name, parts in instances.items()}
     for name, parts in instances.items():
         called = f"{name}={types[name]}"
@@ -238,6 +286,8 @@ def _is(value: Value, wanted: str, types: dict[str, str]) -> bool:
         return value.kind == "reference" and types.get(str(value.content)) in wanted[1:].split("|")
     if wanted.startswith("m:"):
         return value.kind in wanted[2:].split("|") and [one.kind for one in value.content] == ["real"]  # type: ignore[attr-defined]
+    if wanted.startswith("t:"):
+        return value.kind in wanted[2:].split("|") and [one.kind for one in value.content] == ["string"]  # type: ignore[attr-defined]
     if wanted[0] == ".":
         return value.kind == "enumeration" and str(value.content)[1:-1] in wanted[1:].split("|")
     if wanted in ("b", "l"):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import MISSING, fields, replace
+from dataclasses import MISSING, asdict, fields, replace
+from fractions import Fraction
 from inspect import signature
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
 import pytest
 
 from cadpanel.cli.compare import compare
@@ -51,6 +53,9 @@ FIT, READ, SHEET, SHOP = map(names, (FitSettings, ReferenceSettings, SheetSettin
 
 
 ALL_SETTINGS = (FitSettings, ReferenceSettings, SheetSettings, ShopSettings)
+NUMBERS_WITHOUT_A_DEFAULT = {
+    *("max_deviation", "gap_tolerance", "joint_tolerance", "step", "shift", "energy", "panel_length", "lip"),
+}
 
 
 def options(command: Callable[..., None]) -> set[str]:
@@ -62,6 +67,30 @@ def test_every_setting_says_how_it_is_asked_for(settings: type[Any]) -> None:
     for field, option in options_of(settings):
         assert option.help.endswith((".", "?", "...")), field.name
         assert field.default is not MISSING
+
+
+@pytest.mark.parametrize("settings", ALL_SETTINGS)
+def test_numbers_of_any_kind_make_the_same_setting(settings: type[Any]) -> None:
+    for one in fields(settings):
+        usual = one.default
+        if one.name in NUMBERS_WITHOUT_A_DEFAULT:
+            usual = 2.0
+        elif isinstance(usual, bool) or not isinstance(usual, int | float):
+            continue
+        for kind in (np.float64, np.int64, int, Fraction):
+            if kind(usual) != usual or (isinstance(usual, int) and kind in (np.float64, Fraction)):
+                continue
+            kept = getattr(settings(**{"divide": 3} if one.name == "lip" else {}, **{one.name: kind(usual)}), one.name)
+            assert (type(kept), kept) == (type(usual), usual), one.name
+
+
+def test_weights_of_any_kind_are_the_same_weights() -> None:
+    kept = Weights(gap=1, deviation=np.float32(1.0), drift=np.int64(1))  # type: ignore[arg-type] # as users may
+    assert {type(value) for value in asdict(kept).values()} == {float}
+
+
+def test_the_number_of_panels_is_a_whole_number_of_pythons() -> None:
+    assert type(ReferenceSettings(divide=np.int64(4)).divide) is int  # type: ignore[arg-type] # as users may
 
 
 def test_keywords_are_the_fields() -> None:

@@ -18,6 +18,8 @@ _NO_REPLACE = 1
 _EXCHANGE = 2
 _NOT_POSSIBLE = frozenset({errno.EINVAL, errno.ENOSYS, errno.ENOTSUP, errno.EPERM})
 """What a system, or a disk, says that cannot exchange."""
+_KEEPS_ITSELF = frozenset({errno.EINVAL, errno.ENOTSUP, errno.EBADF})
+"""What a shared disk says that takes no order to write a folder down: it does so when it likes."""
 
 _Rename = Callable[[bytes, bytes, int], int]
 
@@ -45,7 +47,11 @@ def put_where_nothing_is(folder: Path, place: Path) -> None:
 
 
 def make_lasting(folder: Path) -> None:
-    """See that a folder's files are on the disk, and not only on their way there, before it takes its place."""
+    """See that a folder's files are on the disk, and not only on their way there, before it takes its place.
+
+    Raises:
+        OSError: a file cannot be written down. Of a folder it is passed over where the disk has no such order.
+    """
     if os.name == "nt":
         return  # a folder cannot be opened there, and files are written through when they are closed
     for path in (*folder.rglob("*"), folder):
@@ -54,6 +60,9 @@ def make_lasting(folder: Path) -> None:
         handle = os.open(path, os.O_RDONLY)
         try:
             os.fsync(handle)
+        except OSError as error:
+            if error.errno not in _KEEPS_ITSELF or not path.is_dir():
+                raise
         finally:
             os.close(handle)
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from cadpanel.delivery.exchange import exchanged, make_lasting, put_where_nothing_is
 from cadpanel.delivery.manifest import write_manifest
 from cadpanel.delivery.own_files import MARKS_OF_A_DELIVERY, changed_since, is_ours, strangers
-from cadpanel.delivery.work_folders import aside_of, clear_left_behind, work_folder
+from cadpanel.delivery.work_folders import aside_of, clear_left_behind, keep_from_clearing, work_folder
 from cadpanel.errors import CadpanelError, DeliveryError
 
 _DISK_FAULTS = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO, errno.EFBIG})
@@ -130,6 +130,7 @@ def _put_in_place(work: Path, place: Path, target: Path) -> Path | None:
         if not os.path.lexists(place):
             put_where_nothing_is(work, place)
             return None
+        keep_from_clearing(place)
         if exchanged(work, place):
             return work
     except FileExistsError as error:
@@ -157,6 +158,8 @@ def _stand_aside(work: Path, place: Path, target: Path) -> Path:
 def _delete(aside: Path, target: Path) -> None:
     try:
         shutil.rmtree(aside)
+    except FileNotFoundError:
+        return  # another machine clears it as left behind
     except OSError as error:
         raise DeliveryError(
             f"'{target}' is written, but what stood there before could not be deleted from '{aside}': {error.strerror}."

@@ -35,6 +35,8 @@ OWN_FOLDERS = {folder: mark for output in OUTPUTS for folder, mark in output.fol
 """Folders that cadpanel writes, and how every file in one of them begins."""
 LITTER = frozenset({".DS_Store", "Thumbs.db", "desktop.ini"})
 """What file managers leave in a folder that people look into; it goes with the delivery."""
+_APPLE_DOUBLE = b"\x00\x05\x16\x07"
+"""How the files begin that macOS puts beside others on shared disks and sticks: ._panels.step beside panels.step."""
 
 _OWN_SCHEMA = re.compile(rb'"schema"\s*:\s*"cadpanel\.')
 _MARK_BYTES = 4096
@@ -51,7 +53,7 @@ def strangers(place: Path) -> set[str]:
         if not (place / folder).is_dir():
             continue
         for entry in (place / folder).iterdir():
-            if not _is_plain(entry) or (entry.name not in LITTER and not _begins(entry, mark)):
+            if not _is_plain(entry) or not (_is_litter(entry) or _begins(entry, mark)):
                 found.add(f"{folder}/{entry.name}")
     return found
 
@@ -76,14 +78,24 @@ def is_ours(place: Path) -> bool:
     Raises:
         OSError: something cannot be read.
     """
-    names = {entry.name for entry in place.iterdir()} - LITTER
-    return not names or any(_is_mark(place / mark) for mark in MARKS_OF_A_DELIVERY)
+    holds_nothing = all(_is_litter(entry) for entry in place.iterdir())
+    return holds_nothing or any(_is_mark(place / mark) for mark in MARKS_OF_A_DELIVERY)
+
+
+def _is_litter(entry: Path) -> bool:
+    """Whether nobody wrote a file: a file manager left it.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    beside_another = entry.name.startswith("._") and _is_plain(entry) and _begins(entry, _APPLE_DOUBLE)
+    return entry.name in LITTER or beside_another
 
 
 def _is_known(entry: Path) -> bool:
     if entry.name in OWN_FOLDERS:
         return entry.is_dir() and not entry.is_symlink()
-    return entry.name in OWN_FILES | LITTER and _is_plain(entry)
+    return _is_plain(entry) and (entry.name in OWN_FILES or _is_litter(entry))
 
 
 def _is_plain(entry: Path) -> bool:

@@ -56,7 +56,7 @@ class Weights:
     drift: float = 1e-4
 
     def __post_init__(self) -> None:
-        """Refuse weights that make no objective.
+        """Refuse weights that make no objective, and keep them as floats.
 
         Raises:
             SettingsError: a weight is not a number of 0 or more, or no deviation or drift is left to fit.
@@ -67,6 +67,8 @@ class Weights:
             raise SettingsError("the weights of deviation and drift must be above 0, or panels may wander off")
         for name in ("deviation", "drift"):
             require(name + " weight", getattr(self, name), least=SMALLEST_WEIGHT, most=LARGEST_WEIGHT)
+        for name in _WEIGHTS:
+            object.__setattr__(self, name, float(getattr(self, name)))
 
     @staticmethod
     def parse(text: str) -> Weights:

@@ -161,7 +161,7 @@ class ReferenceSettings:
     )
 
     def __post_init__(self) -> None:
-        """Check every setting, and bring lists and paths into one form.
+        """Check every setting, and bring numbers, lists and paths into one form.
 
         Raises:
             SettingsError: a setting is out of its range, or contradicts another one.
@@ -183,7 +183,11 @@ class ReferenceSettings:
             raise SettingsError(f"{ways} are ways to cut the same surface: choose one of them")
         if self.divide is not None and self.divide not in BY_FITS:
             _require_count("number of panels to divide a strip into", self.divide, least=1)
+            object.__setattr__(self, "divide", int(self.divide))
         self._check_lengthwise()
+        for name in ("seam_tolerance", "panel_length", "lip"):
+            given = getattr(self, name)
+            object.__setattr__(self, name, None if given is None else float(given))
         object.__setattr__(self, "grid", _grid(self.grid))
         object.__setattr__(self, "panel_size", _panel_size(self.panel_size))
         object.__setattr__(self, "stations", _stations(self.stations))

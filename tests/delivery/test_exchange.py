@@ -2,6 +2,8 @@
 
 import ctypes
 import errno
+import os
+import stat
 
 import pytest
 
@@ -61,3 +63,26 @@ def test_files_and_folders_are_made_lasting_and_links_are_let_alone(two, monkeyp
     (two[0] / "link").symlink_to("nowhere")
     make_lasting(two[0])
     assert len(seen) == 2  # the file and its folder
+
+
+def refusing(code, is_refused):
+    """An fsync of a disk that refuses files, or folders."""
+
+    def fsync(handle):
+        if is_refused(os.fstat(handle).st_mode):
+            raise OSError(code, os.strerror(code))
+
+    return fsync
+
+
+@pytest.mark.parametrize("code", [errno.EINVAL, errno.ENOTSUP, errno.EBADF])
+def test_a_disk_that_takes_no_such_order_for_folders_is_delivered_to(two, monkeypatch, code):
+    monkeypatch.setattr("cadpanel.delivery.exchange.os.fsync", refusing(code, stat.S_ISDIR))
+    make_lasting(two[0])
+
+
+@pytest.mark.parametrize(("code", "is_refused"), [(errno.EINVAL, stat.S_ISREG), (errno.EIO, stat.S_ISDIR)])
+def test_a_file_that_is_not_written_down_and_a_broken_disk_are_told(two, monkeypatch, code, is_refused):
+    monkeypatch.setattr("cadpanel.delivery.exchange.os.fsync", refusing(code, is_refused))
+    with pytest.raises(OSError, match=os.strerror(code)):
+        make_lasting(two[0])

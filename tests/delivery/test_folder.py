@@ -18,6 +18,7 @@ from cadpanel.delivery.folder import delivery_folder
 from cadpanel.delivery.manifest import changed_files
 from cadpanel.delivery.own_files import MARKS_OF_A_DELIVERY
 from cadpanel.delivery.records.jsonfile import Record, write_json
+from cadpanel.delivery.work_folders import clear_left_behind
 from cadpanel.errors import DeliveryError, PanelError
 from tests.thorough import cases
 
@@ -306,6 +307,59 @@ def test_where_nothing_is_exchanged_two_renames_do(tmp_path: Path, monkeypatch: 
     deliver(tmp_path / "out", overwrite=True)
     assert (tmp_path / "out" / "panels.step").read_text() == "new"
     assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def clear_from_elsewhere(parent: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Do what another machine does that begins a delivery beside one that is being written."""
+    with monkeypatch.context() as there:
+        there.setattr("cadpanel.delivery.work_folders._host", lambda: "00000000")
+        clear_left_behind(parent)
+
+
+@pytest.mark.parametrize("exchanges", [True, False])
+@pytest.mark.parametrize("when", ["put in place", "deleted"])
+def test_an_old_delivery_that_is_being_replaced_is_not_left_behind_to_another_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, when: str, *, exchanges: bool
+) -> None:
+    target, long_ago = tmp_path / "out", time.time() - 30 * 86_400.0
+    deliver(target, "old")
+    os.utime(target, (long_ago, long_ago))
+    if not exchanges:
+        monkeypatch.setattr(folder_module, "exchanged", lambda *_: False)
+    rename, remove, seen = Path.rename, shutil.rmtree, list[Path]()
+
+    def rename_while_another_clears(self: Path, destination: Path) -> Path:
+        if when == "put in place" and self.suffix == ".part":
+            clear_from_elsewhere(tmp_path, monkeypatch)
+        return rename(self, destination)
+
+    def remove_after_another_has_cleared(path: Path, ignore_errors: bool = False) -> None:
+        if not ignore_errors:
+            clear_from_elsewhere(tmp_path, monkeypatch)
+            seen.extend(path.iterdir())
+        remove(path, ignore_errors=ignore_errors)
+
+    monkeypatch.setattr(Path, "rename", rename_while_another_clears)
+    monkeypatch.setattr(shutil, "rmtree", remove_after_another_has_cleared)
+    deliver(target, overwrite=True)
+    assert (target / "panels.step").read_text() == "new"
+    assert sorted(path.name for path in seen) == WHOLE
+    assert everything_below(tmp_path) == sorted(["out", *(f"out/{name}" for name in WHOLE)])
+
+
+def test_an_old_delivery_that_another_machine_has_deleted_is_not_missed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target, remove = tmp_path / "out", shutil.rmtree
+    deliver(target, "old")
+
+    def remove_after_another(path: Path, ignore_errors: bool = False) -> None:
+        remove(path)
+        remove(path, ignore_errors=ignore_errors)
+
+    monkeypatch.setattr(shutil, "rmtree", remove_after_another)
+    deliver(target, overwrite=True)
+    assert (target / "panels.step").read_text() == "new"
 
 
 @pytest.mark.parametrize("name", ["panels.step", "Thumbs.db", "flat/note.dxf"])

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -57,15 +58,22 @@ def test_a_delivery_that_stood_aside_returns_where_nothing_is_and_goes_where_som
     assert names(tmp_path) == ["out"]
 
 
-def test_folders_of_another_machine_stay_for_a_day(tmp_path, monkeypatch, nobody):
+@pytest.mark.parametrize(("aside", "days", "is_kept"), [(False, 6, True), (False, 8, False), (True, 2, False)])
+def test_folders_of_another_machine_stay_for_longer_than_they_are_worked_at(
+    tmp_path, monkeypatch, nobody, aside, days, is_kept
+):
     with monkeypatch.context() as patched:
         patched.setattr("cadpanel.delivery.work_folders.socket.gethostname", lambda: "elsewhere")
         left = left_by(nobody, tmp_path / "out", patched)
+    if aside:
+        (tmp_path / "out").mkdir()
+        left = left.rename(aside_of(left, tmp_path / "out"))
     clear_left_behind(tmp_path)
     assert left.is_dir()
-    os.utime(left, (0.0, 0.0))
+    then = time.time() - 86_400.0 * days
+    os.utime(left, (then, then))
     clear_left_behind(tmp_path)
-    assert not left.exists()
+    assert left.exists() is is_kept
 
 
 @pytest.mark.parametrize(

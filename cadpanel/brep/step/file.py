@@ -8,8 +8,10 @@ so that neither the text nor shapes that are made as they are asked for stay in 
 from __future__ import annotations
 
 import os
-import tempfile
+import secrets
+import time
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -25,11 +27,14 @@ from cadpanel.brep.step.products import Header, NamedShape, write_step_text
 from cadpanel.brep.step.properties import ATTRIBUTES, PartData, Stated
 from cadpanel.brep.step.schemas import Schema
 from cadpanel.brep.step.stated import stated_of
+from cadpanel.brep.step.text import NoReal
 from cadpanel.brep.step.topology import UnsupportedGeometry
 from cadpanel.errors import DeliveryError
 from cadpanel.sizes import refuse_huge
 
 Color = tuple[float, float, float]
+_STALE_SECONDS = 3600.0
+"""Nobody has written to a file for so long: it is left behind."""
 
 
 def write_step(
@@ -56,7 +61,8 @@ def write_step(
         header: who wrote it, and when.
 
     Raises:
-        DeliveryError: if the file cannot be written, or a shape has other than plane, cone and cylinder faces.
+        DeliveryError: if the file cannot be written, a shape has other than plane, cone and cylinder faces, or a
+            number is not finite.
     """
     target = Path(path)
     try:
@@ -94,30 +100,35 @@ def write_assembly(
 
 def _write_whole(target: Path, write: Callable[[IO[str]], None]) -> None:
     """Write beside the target, and put it in its place once it is complete; whatever goes wrong leaves nothing."""
-    temporary: Path | None = None
+    _clear_left_behind(target)
+    beside = target.with_name(f"{_beside(target)}{secrets.token_hex(4)}")
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="ascii", newline="\n", dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as file:
-            temporary = Path(file.name)
-            write(file.file)  # itself: what stands around it takes a fifth of the time of writing
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(target)
-        temporary = None
+        try:
+            with beside.open("x", encoding="ascii", newline="\n") as file:
+                write(file)
+                file.flush()
+                os.fsync(file.fileno())
+            beside.replace(target)
+        finally:
+            with suppress(OSError):  # what went wrong before is told
+                beside.unlink(missing_ok=True)
     except OSError as error:
         raise DeliveryError(f"{target} cannot be written: {error.strerror or error}.") from error
-    finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
+    except NoReal as error:
+        raise DeliveryError(f"{target} cannot be written: it would hold {error}.") from error
 
 
-def _umask() -> int:
-    """The process's mask; a temporary file is created for the owner only, the delivered one is not to be."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _beside(target: Path) -> str:
+    """How the names of files begin that are on their way to a target."""
+    return f".{target.name}.cadpanel-"
+
+
+def _clear_left_behind(target: Path) -> None:
+    """Remove what runs have left beside a target that were killed while they wrote it."""
+    with suppress(OSError):  # what cannot be read or removed is in nobody's way
+        for path in target.parent.iterdir():
+            if path.name.startswith(_beside(target)) and time.time() - path.stat().st_mtime > _STALE_SECONDS:
+                path.unlink()
 
 
 def read_step_shapes(path: str | os.PathLike[str], *, heal: bool = False) -> list[tuple[str, TopoDS_Shape]]:

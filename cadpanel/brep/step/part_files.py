@@ -46,14 +46,14 @@ def write_assembly_text(
     """
     text = begin_step_text(file, title, schema, header)
     frame = StepFrame(text, schema)
-    assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
+    assembly = frame.assembly(title, (part.placed for part in parts))
     kind = text.add("DOCUMENT_TYPE('')")
     for number, part in enumerate(parts, start=1):
         document = _document(text, part.path, kind, schema)
         data = PartData(number=f"{title}/{part.name}")
-        product = frame.product(part.name, data, "SHAPE_REPRESENTATION", [frame.origin], [document])
-        _refer(text, document, product[0])
-        frame.place(product, assembly, number, part.name, frame.placement(part.placed))
+        product = frame.product(part.name, data, "SHAPE_REPRESENTATION", [], [document])
+        _refer(text, document, product.definition)
+        frame.place(product, assembly, number, part.name, part.placed)
     end_step_text(file)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import IO
@@ -32,6 +32,9 @@ class Header:
     note: str = ""
 
 
+Place = tuple[float, float, float]
+"""Where the origin of a part's coordinates lies in the assembly, mm."""
+_ORIGIN: Place = (0.0, 0.0, 0.0)
 NamedShape = tuple[str, TopoDS_Shape, tuple[float, float, float] | None]
 """A name, a shape and its colour, sRGB with components in 0 to 1."""
 
@@ -41,7 +44,7 @@ def write_step_text(
     shapes: Iterable[NamedShape],
     title: str,
     schema: Schema,
-    placed: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    placed: Place = _ORIGIN,
     data: Iterable[PartData] | None = None,
     header: Header | None = None,
 ) -> None:
@@ -61,15 +64,14 @@ def write_step_text(
     """
     text = begin_step_text(file, title, schema, header)
     frame = StepFrame(text, schema)
-    assembly = frame.product(title, PartData(number=title), "SHAPE_REPRESENTATION", [frame.origin])
-    place = frame.placement(placed)
+    assembly = frame.assembly(title, [placed])
     styled = []
     for number, ((name, shape, color), part_data) in enumerate(_told(shapes, data), start=1):
         item = TopologyWriter(text).item(shape)
         solid = shape.ShapeType() == TopAbs_SOLID
         kind = "ADVANCED_BREP_SHAPE_REPRESENTATION" if solid else "MANIFOLD_SURFACE_SHAPE_REPRESENTATION"
-        part = frame.product(name, part_data, kind, [frame.origin, item])
-        frame.place(part, assembly, number, name, place)
+        part = frame.product(name, part_data, kind, [item])
+        frame.place(part, assembly, number, name, placed)
         if color is not None:
             styled.append(text.add(f"STYLED_ITEM('color',(#{frame.style(color)}),#{item})"))
     if styled:
@@ -108,8 +110,28 @@ def _header(title: str, schema_name: str, header: Header) -> str:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class Product:
+    """The numbers of a product's definition and of its shape's representation."""
+
+    definition: int
+    representation: int
+
+
+@dataclass(frozen=True, slots=True)
+class Assembly:
+    """The product that all others hang in, and the axes at each place that they may have in it."""
+
+    product: Product
+    axes: Mapping[Place, int]
+
+
 class StepFrame:
-    """What all products of a file share: contexts, units, origin, colours."""
+    """What all products of a file share: contexts, units, origin, colours.
+
+    Parts have one context and the assembly has another, and the axes by which a part is placed stand among the items
+    of both representations, each its own: so the schema wants it (representation_relationship_with_transformation).
+    """
 
     def __init__(self, text: StepText, schema: Schema) -> None:
         """Write what all products share.
@@ -133,27 +155,38 @@ class StepFrame:
             f"UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({real(UNCERTAINTY)}),#{length},"
             "'distance_accuracy_value','confusion accuracy')"
         )
-        self.context = add(
-            f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
-            f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid_angle}))REPRESENTATION_CONTEXT('',''))"
+        self.context, self._context_of_assembly = (
+            add(
+                f"(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT((#{uncertainty}))"
+                f"GLOBAL_UNIT_ASSIGNED_CONTEXT((#{length},#{angle},#{solid_angle}))REPRESENTATION_CONTEXT('{of}',''))"
+            )
+            for of in ("parts", "assembly")
         )
         self._properties = PropertyWriter(text, self.context, length)
-        self.origin = self._placement((0.0, 0.0, 0.0))
+        self._origin = self._placement(_ORIGIN)
 
-    def placement(self, place: tuple[float, float, float]) -> int:
-        """Axes at a place, those of the origin where it is there."""
-        return self._placement(place) if any(place) else self.origin
-
-    def _placement(self, place: tuple[float, float, float]) -> int:
-        point = self._text.add(f"CARTESIAN_POINT('',({','.join(real(float(part)) for part in place)}))")
+    def _placement(self, place: Place) -> int:
+        point = self._text.add(f"CARTESIAN_POINT('',({','.join(map(real, place))}))")
         z_axis = self._text.add("DIRECTION('',(0.,0.,1.))")
         x_axis = self._text.add("DIRECTION('',(1.,0.,0.))")
         return self._text.add(f"AXIS2_PLACEMENT_3D('',#{point},#{z_axis},#{x_axis})")
 
+    def assembly(self, title: str, places: Iterable[Place]) -> Assembly:
+        """A new product that parts may hang in at some places; it has axes at its origin, too."""
+        axes = {place: self._placement(place) for place in dict.fromkeys([_ORIGIN, *places])}
+        number = PartData(number=title)
+        items, context = list(axes.values()), self._context_of_assembly
+        return Assembly(self._product(title, number, "SHAPE_REPRESENTATION", items, context), axes)
+
     def product(
         self, name: str, data: PartData, kind: str, items: Sequence[int], documents: Sequence[int] = ()
-    ) -> tuple[int, int]:
-        """Product definition and shape representation of a new product; it may stand in documents."""
+    ) -> Product:
+        """A new part with its origin and other items; it may stand in documents."""
+        return self._product(name, data, kind, [self._origin, *items], self.context, documents)
+
+    def _product(
+        self, name: str, data: PartData, kind: str, items: Sequence[int], context: int, documents: Sequence[int] = ()
+    ) -> Product:
         add, said = self._text.add, ",".join(string(text) for text in (data.number, name, data.description))
         product = add(f"PRODUCT({said},(#{self._product_context}))")
         add(f"PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))")
@@ -165,19 +198,21 @@ class StepFrame:
             else f"PRODUCT_DEFINITION({told})"
         )
         shape = add(f"PRODUCT_DEFINITION_SHAPE('','',#{definition})")
-        representation = add(f"{kind}('',{references(items)},#{self.context})")
+        representation = add(f"{kind}('',{references(items)},#{context})")
         add(f"SHAPE_DEFINITION_REPRESENTATION(#{shape},#{representation})")
         self._properties.write(data, definition, shape)
-        return definition, representation
+        return Product(definition, representation)
 
-    def place(self, part: tuple[int, int], assembly: tuple[int, int], number: int, name: str, place: int) -> None:
-        """Put a part into the assembly, its origin at axes that `placement` gave."""
-        add = self._text.add
-        usage = add(f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{assembly[0]},#{part[0]},$)")
+    def place(self, part: Product, assembly: Assembly, number: int, name: str, place: Place) -> None:
+        """Put a part into the assembly, its origin at one of the places that the assembly has axes at."""
+        add, whole = self._text.add, assembly.product
+        usage = add(
+            f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{number}',{string(name)},'',#{whole.definition},#{part.definition},$)"
+        )
         placed = add(f"PRODUCT_DEFINITION_SHAPE('Placement','Placement of an item',#{usage})")
-        moved = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self.origin},#{place})")
+        moved = add(f"ITEM_DEFINED_TRANSFORMATION('','',#{self._origin},#{assembly.axes[place]})")
         relation = add(
-            f"(REPRESENTATION_RELATIONSHIP('','',#{part[1]},#{assembly[1]})"
+            f"(REPRESENTATION_RELATIONSHIP('','',#{part.representation},#{whole.representation})"
             f"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{moved})SHAPE_REPRESENTATION_RELATIONSHIP())"
         )
         add(f"CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{relation},#{placed})")
@@ -186,7 +221,7 @@ class StepFrame:
         """One style a colour, shared by all that wear it."""
         if color not in self._styles:
             add = self._text.add
-            rgb = add(f"COLOUR_RGB('',{','.join(real(float(part)) for part in color)})")
+            rgb = add(f"COLOUR_RGB('',{','.join(map(real, color))})")
             fill = add(f"FILL_AREA_STYLE_COLOUR('',#{rgb})")
             area = add(f"FILL_AREA_STYLE('',(#{fill}))")
             side = add(f"SURFACE_SIDE_STYLE('',(#{add(f'SURFACE_STYLE_FILL_AREA(#{area})')}))")

@@ -149,7 +149,7 @@ class PropertyWriter:
         return found
 
     def _power(self, exponent: int) -> int:
-        element = self._once(f"DERIVED_UNIT_ELEMENT(#{self._length},{real(float(exponent))})")
+        element = self._once(f"DERIVED_UNIT_ELEMENT(#{self._length},{real(exponent)})")
         return self._once(f"DERIVED_UNIT((#{element}))")
 
     def _kilogram(self) -> int:

@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import IO
 
 ITEMS_A_LINE = 16
 
 
+class NoReal(ValueError):
+    """A number has no text in the exchange structure; says which."""
+
+
 def real(number: float) -> str:
-    """A real with all its digits, so that reading it gives the same double: 1e-07 becomes 1.E-07."""
-    text = repr(number)
+    """A real with all its digits, so that reading it gives the same double: 1e-07 becomes 1.E-07.
+
+    Args:
+        number: of any kind: text of whole numbers, or of NumPy's, would be no real.
+
+    Raises:
+        NoReal: it is not finite.
+    """
+    double = float(number)
+    if not math.isfinite(double):
+        raise NoReal(f"the number {double}, and STEP has finite ones alone")
+    text = repr(double)
     if "e" in text:
         mantissa, exponent = text.split("e")
         return f"{mantissa if '.' in mantissa else mantissa + '.'}E{exponent}"

@@ -1,6 +1,9 @@
 """STEP files keep every name, colour and digit, repeat byte for byte, and are written whole or not at all."""
 
+import errno
 import os
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +18,11 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cadpanel.brep.building.sheet import build_panel, build_skin, build_solid, volume_of
+from cadpanel.brep.files.step_reader import read_document
 from cadpanel.brep.proof import boundary
 from cadpanel.brep.proof.inspection import boundary_of, inspect
-from cadpanel.brep.step.file import read_step_shapes, write_step
+from cadpanel.brep.step.file import read_step_shapes, write_assembly, write_step
+from cadpanel.brep.step.part_files import PartFile
 from cadpanel.brep.step.text import real, string
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.errors import DeliveryError, PanelError
@@ -161,6 +166,56 @@ def test_an_existing_file_is_replaced_and_nothing_else_is_left(tmp_path):
     assert (tmp_path / "a.step").read_text().startswith("ISO-10303-21;")
 
 
+def test_what_a_killed_run_left_is_removed_by_the_next_one_and_nothing_else_is(tmp_path):
+    long_ago = time.time() - 86_400.0
+    for name, begun in (
+        ("a.step.cadpanel-0123abcd", long_ago),  # killed
+        ("a.step.cadpanel-89ef4567", time.time()),  # at work beside us
+        ("b.step.cadpanel-0123abcd", long_ago),  # on its way to another file
+        ("a.step.swp", long_ago),  # somebody's
+    ):
+        (tmp_path / f".{name}").write_text("half")
+        os.utime(tmp_path / f".{name}", (begun, begun))
+    write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    left = {file.name for file in tmp_path.iterdir()} - {"a.step"}
+    assert left == {".a.step.cadpanel-89ef4567", ".b.step.cadpanel-0123abcd", ".a.step.swp"}
+
+
+def test_a_file_on_its_way_has_a_name_by_which_the_next_run_knows_it(tmp_path, monkeypatch):
+    def killed(_descriptor):
+        [beside] = tmp_path.iterdir()
+        os.utime(beside, (0.0, 0.0))
+        beside.rename(tmp_path / f"{beside.name}0")  # what has another name is not removed on the way out
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "fsync", killed)
+        with pytest.raises(KeyboardInterrupt):
+            write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    assert len(list(tmp_path.iterdir())) == 1
+    write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    assert [file.name for file in tmp_path.iterdir()] == ["a.step"]
+
+
+def test_the_file_has_the_permissions_of_any_other_file_also_where_none_can_be_given(tmp_path, monkeypatch):
+    def refused(*_args, **_kwargs):
+        raise OSError(errno.EPERM, os.strerror(errno.EPERM))
+
+    for module in (os, Path):
+        monkeypatch.setattr(module, "chmod", refused)
+    write_step(tmp_path / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
+    (tmp_path / "plain").write_text("")
+    assert (tmp_path / "a.step").stat().st_mode == (tmp_path / "plain").stat().st_mode
+
+
+@pytest.mark.parametrize("number", [np.inf, np.nan])
+def test_a_number_that_is_not_finite_is_refused_by_the_files_name(tmp_path, number):
+    shapes = [("p", build_skin(random_panel(1)), None)]
+    with pytest.raises(DeliveryError, match=r"a\.step cannot be written: it would hold the number (inf|nan), and STEP"):
+        write_step(tmp_path / "a.step", shapes, title="t", placed=(0.0, number, 0.0))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_folder_that_is_not_there_is_one_clear_sentence(tmp_path):
     with pytest.raises(DeliveryError, match=r"a\.step cannot be written: No such file or directory\."):
         write_step(tmp_path / "none" / "a.step", [("p", build_skin(random_panel(1)), None)], title="t")
@@ -235,3 +290,25 @@ def test_shapes_are_placed_in_the_assembly_and_keep_their_own_numbers(tmp_path, 
         assert other.valid
         assert np.array_equal(one.vertices, other.vertices)
         assert one.volume == other.volume
+
+
+@pytest.mark.parametrize("placed", [(0.0, 0.0, 0.0), (8.3e8, -2.1e8, 1000.0)])
+def test_the_kernels_reader_has_nothing_to_remark(tmp_path, panels, placed):
+    shapes = [(panel.name, build_solid(panel, 3.0), BLUE) for panel in panels[:2]]
+    write_step(tmp_path / "a.step", shapes, title="t", placed=placed)
+    write_assembly(tmp_path / "b.step", [PartFile(name="a", path="a.step", placed=placed)], title="b")
+    for file in ("a.step", "b.step"):
+        assert remarks(tmp_path / file) == []
+
+
+def remarks(path):
+    """What the kernel's reader warns of, or fails at."""
+    step, found = read_document(path, labels=True), []
+    checks = step.reader.Reader().WS().TransferReader().LastCheckList()
+    checks.Start()
+    while checks.More():
+        check = checks.Value()
+        found += [check.CWarning(index) for index in range(1, check.NbWarnings() + 1)]
+        found += [check.CFail(index) for index in range(1, check.NbFails() + 1)]
+        checks.Next()
+    return found

@@ -1,14 +1,16 @@
 """The text of a STEP file: numbers and names that read back as they were, and instances that are shared."""
 
 import io
+import math
 import re
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cadpanel.brep.step.text import ITEMS_A_LINE, StepText, real, references, string
+from cadpanel.brep.step.text import ITEMS_A_LINE, NoReal, StepText, real, references, string
 
 CODES = re.compile(r"''|\\\\|\\X4\\((?:[0-9A-F]{8})+)\\X0\\|\\X2\\((?:[0-9A-F]{4})+)\\X0\\")
 
@@ -34,6 +36,17 @@ def test_a_real_has_a_point_and_all_its_digits(number):
 @pytest.mark.parametrize(("number", "text"), [(1e-07, "1.E-07"), (2.5e20, "2.5E+20"), (3.0, "3.0"), (-0.0, "-0.0")])
 def test_reals_are_written_as_the_standard_wants_them(number, text):
     assert real(number) == text
+
+
+@pytest.mark.parametrize("kind", [int, bool, np.int64, np.float32, np.float64, Fraction])
+def test_numbers_of_any_kind_are_reals(kind):
+    assert real(kind(1)) == "1.0"
+
+
+@pytest.mark.parametrize("number", [math.inf, -math.inf, math.nan, np.float32("inf")])
+def test_what_is_not_finite_is_no_real(number):
+    with pytest.raises(NoReal, match=f"the number {float(number)}, and STEP has finite ones alone"):
+        real(number)
 
 
 @given(text=st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0")))

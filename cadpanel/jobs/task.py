@@ -15,7 +15,6 @@ from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
-from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.settings import FitSettings
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.schema import RULES, asked
@@ -98,10 +97,9 @@ def task_of(region: Region, date: str | None = None) -> Task:
         beside = 0 if other is None else len(contents)
         contents += [] if other is None else [_content(other)]
     locks: dict[str, int] = {}
-    for rule in () if region.settings.rules is None else region.settings.rules.rules:
-        if isinstance(rule, LockRule) and rule.unread and rule.delivery not in locks:
-            locks[rule.delivery] = len(contents)
-            contents.append(_content(Path(rule.delivery) / REPORT))
+    for name, place in region.deliveries.items():
+        locks[name] = len(contents)
+        contents.append(_content(place / REPORT))
     return Task(
         name=region.name,
         key=_key(region, contents, date),

@@ -14,7 +14,9 @@ from cadpanel.brep.skin.conjugate import SeamLean
 from cadpanel.brep.survey import SurfaceSurvey
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.jobs import begin as module
-from cadpanel.jobs.begin import begun_job
+from cadpanel.jobs.begin import Begun, begun_job
+from cadpanel.jobs.names import first_fault
+from cadpanel.jobs.variables import substituted
 from cadpanel.reference.settings import ReferenceSettings
 
 LEANING = SeamLean(mean=5.0, largest=9.0, at=100.0)
@@ -76,6 +78,18 @@ def test_a_surface_that_nothing_cuts_is_left_out_and_a_file_of_such_is_refused(b
     assert set(begun(surfaces, reads=lambda how: how.faces == ("1",) and how.way == "panel_length")) == {"S1"}
     with pytest.raises(ReferenceFileError, match=r"no way was found to cut 'skin\.brep' into panels: it cannot be cut"):
         begun(surfaces, reads=lambda _: False)
+
+
+@pytest.mark.parametrize("name", ["${x}.step", "a\n[b]\x07.step", "job.toml.step", "$${x}'.step"])
+def test_whatever_a_file_is_called_it_is_named_as_it_is(tmp_path: Path, name: str) -> None:
+    """Among the names some that would be a variable, end a comment, or be the file of a job."""
+    good = Begun(module._name(Path(name).stem), "", {"faces": ("name=${y}",)})
+    bad = Begun("S2", "", {}, "it\x07is")
+    read = tomllib.loads(module._text(tmp_path / name, ReferenceSettings(), tmp_path, (good, bad)))
+    assert substituted(read["defaults"]["reference"], {}) == name
+    ((region, values),) = read["regions"].items()
+    assert first_fault([region], [True]) is None
+    assert substituted(values, {}) == {"faces": ["name=${y}"]}
 
 
 def test_lengths_to_begin_with_have_two_digits() -> None:

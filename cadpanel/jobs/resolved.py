@@ -10,9 +10,10 @@ from typing import Any
 
 import tomli_w
 
+from cadpanel.jobs.program import program
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.schema import DELIVERIES, REFERENCE, RULES, SHA256, asked
-from cadpanel.jobs.task import Task, program
+from cadpanel.jobs.task import Task
 from cadpanel.jobs.variables import escaped
 
 _MARK = "# A job of cadpanel"

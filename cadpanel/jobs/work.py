@@ -21,7 +21,8 @@ from cadpanel.delivery.source_date import VARIABLE
 from cadpanel.errors import CadpanelError, DeliveryError, ProofError
 from cadpanel.jobs.archive import packed
 from cadpanel.jobs.make import Asked, make_delivery
-from cadpanel.jobs.task import Content, Task, located, program, program_sum
+from cadpanel.jobs.program import program, program_sum
+from cadpanel.jobs.task import Content, Task, located
 from cadpanel.memory import give_back
 
 RETRIES = 2
@@ -65,8 +66,11 @@ def work(task: Task, contents: Sequence[Content | bytes], tell: Tell, *, side_by
         side_by_side: how many tasks are worked at on this machine at once, which share its processors. What is made
             does not depend on it.
     """
-    if task.program != program_sum():
-        said = f"the worker has another cadpanel, {program()['version']}, or other packages: install one everywhere"
+    if task.program != program_sum(task.needs):
+        said = (
+            f"the worker has another cadpanel, {program()['version']}, another Python or other packages: install one "
+            "everywhere"
+        )
         return refused(task, said)
     for tries in range(1, RETRIES + 2):
         try:

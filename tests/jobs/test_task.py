@@ -5,10 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.output import Output
 from cadpanel.errors import SettingsError
+from cadpanel.jobs import task as module
+from cadpanel.jobs.program import program, program_sum
 from cadpanel.jobs.read import read_job
 from cadpanel.jobs.region import Region
-from cadpanel.jobs.task import located, program, task_of
+from cadpanel.jobs.task import Files, located, task_of
 from cadpanel.reference.settings import ReferenceSettings
 from tests.jobs.jobs import job
 
@@ -69,6 +73,33 @@ def test_an_earlier_delivery_that_panels_are_locked_to_counts_by_its_report(
     assert task_of(a).key != task.key
 
 
-def test_the_program_is_told_by_its_text_and_what_it_computes_with() -> None:
-    assert len(program()["text"]) == 64
-    assert {"numpy", "scipy", "cadquery", "cadquery-ocp"} <= set(program()["packages"])
+def test_files_are_looked_at_once_a_run(tmp_path: Path, strip: Path) -> None:
+    a, b = regions(tmp_path, strip, 'A = {}\nB = {network = "lip.step"}')
+    files = Files()
+    before = task_of(a, files=files)
+    a.reference.write_bytes(a.reference.read_bytes() + b"\n")
+    assert task_of(b, files=files).contents == before.contents
+    assert task_of(a).key != before.key
+
+
+@pytest.mark.parametrize("output", [one for one in OUTPUTS if not one.always], ids=lambda one: str(one.name))
+def test_a_task_needs_what_its_outputs_are_written_with(tmp_path: Path, strip: Path, output: Output) -> None:
+    (a,) = regions(tmp_path, strip, f'A = {{outputs = ["{output.name}"]}}')
+    assert task_of(a).needs == tuple(sorted(output.needs))
+    assert task_of(a).program == program_sum(tuple(sorted(output.needs)))
+
+
+def test_a_task_needs_what_its_files_are_read_with_whatever_they_are_called(tmp_path: Path, strip: Path) -> None:
+    (tmp_path / "rhino.step").write_bytes(b"3D Geometry File Format ")
+    own, other = regions(tmp_path, strip, 'A = {reference = "rhino.step"}\nB = {network = "rhino.step"}')
+    assert task_of(own).needs == task_of(other).needs == ("rhino3dm",)
+
+
+def test_the_key_hangs_on_the_program_with_what_the_task_needs(
+    tmp_path: Path, strip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sheet, plain = regions(tmp_path, strip, 'A = {outputs = ["xlsx"]}\nB = {}')
+    before = task_of(sheet).key, task_of(plain).key
+    monkeypatch.setattr(module, "program", lambda needs: {**program(), **({"new": needs} if needs else {})})
+    assert task_of(sheet).key != before[0]
+    assert task_of(plain).key == before[1]

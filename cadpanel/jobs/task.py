@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -102,6 +102,16 @@ class Files:
         if path not in self._known:
             self._known[path] = _content(path)
         return self._known[path]
+
+
+def parts_of(regions: Sequence[Region], date: str | None = None) -> list[tuple[Region, Task]]:
+    """The regions of a run with their tasks.
+
+    Raises:
+        SettingsError: as `task_of` says.
+    """
+    files = Files()
+    return [(region, task_of(region, date, files)) for region in regions]
 
 
 def task_of(region: Region, date: str | None = None, files: Files | None = None) -> Task:

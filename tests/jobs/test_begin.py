@@ -62,12 +62,12 @@ def test_every_surface_has_the_first_way_to_cut_that_gives_panels(begun: Any) ->
     surfaces = [
         surface("S1", (1, 2, 3, 7), (9000.0, 800.0), seams=LEANING),
         surface("Roof, north", (4,), (9000.0, 8000.0)),
-        surface("S3", (5, 6), None),
+        surface("Job.toml", (5, 6), None),
     ]
     assert begun(surfaces, reads=lambda how: how.way is not None) == {
         "S1": {"faces": ["1-3", "7"], "panel_length": 2000.0, "seams": "conjugate", "feature": "cone"},
         "Roof, north": {"faces": ["4"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
-        "S3": {"faces": ["5-6"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
+        "Job.toml-2": {"faces": ["5-6"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
     }
     found = begun(surfaces[:1], reads=lambda how: how.way == "grid", fits=lambda _, feature: feature != "cone")
     assert found == {"S1": {"grid": [2, 2], "feature": "planar-quadrilateral"}}

@@ -35,6 +35,11 @@ def test_a_matrix_is_over_settings_references_and_variables_that_are_used(tmp_pa
     assert len(found) == 4
 
 
+def test_variables_may_be_made_of_those_above_them(tmp_path: Path) -> None:
+    text = '[variables]\na = "x"\nb = "${a}y"\nc = "${b}z"\n[regions.A]\nreference = "${c}"\n'
+    assert values(tmp_path, text) == {"A": {"reference": "xyz"}}
+
+
 def test_a_region_knows_its_name_in_its_matrix_too(tmp_path: Path) -> None:
     found = values(tmp_path, '[regions.A.matrix]\nreference = ["${region}.step"]\n')
     assert found == {"A-reference=A.step": {"reference": "A.step"}}

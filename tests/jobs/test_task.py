@@ -12,14 +12,15 @@ from cadpanel.jobs import task as module
 from cadpanel.jobs.program import program, program_sum
 from cadpanel.jobs.read import read_job
 from cadpanel.jobs.region import Region
-from cadpanel.jobs.task import Files, located, task_of
+from cadpanel.jobs.task import Content, located, parts_of, task_of
 from cadpanel.reference.settings import ReferenceSettings
 from tests.jobs.jobs import job
 
 
-def regions(folder: Path, strip: Path, text: str) -> list[Region]:
+def regions(folder: Path, strip: Path, text: str, *others: str) -> list[Region]:
     folder.mkdir(exist_ok=True)
-    (folder / "lip.step").write_bytes((strip / "lip.step").read_bytes())
+    for name in ("lip.step", *others):
+        (folder / name).write_bytes((strip / "lip.step").read_bytes())
     return list(read_job(job(folder, text)).regions)
 
 
@@ -73,13 +74,22 @@ def test_an_earlier_delivery_that_panels_are_locked_to_counts_by_its_report(
     assert task_of(a).key != task.key
 
 
-def test_files_are_looked_at_once_a_run(tmp_path: Path, strip: Path) -> None:
-    a, b = regions(tmp_path, strip, 'A = {}\nB = {network = "lip.step"}')
-    files = Files()
-    before = task_of(a, files=files)
-    a.reference.write_bytes(a.reference.read_bytes() + b"\n")
-    assert task_of(b, files=files).contents == before.contents
-    assert task_of(a).key != before.key
+def test_files_are_looked_at_once_a_run(tmp_path: Path, strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So all regions of a run are about the same bytes, whoever writes them meanwhile."""
+    seen, look = list[str](), module._content
+
+    def looked(path: Path) -> Content:
+        seen.append(path.name)
+        found = look(path)
+        path.write_bytes(path.read_bytes() + b"\n")
+        return found
+
+    asked = regions(tmp_path, strip, 'A = {}\nB = {network = "lip.step"}\nC = {network = "curves.step"}', "curves.step")
+    monkeypatch.setattr(module, "_content", looked)
+    tasks = [task for _, task in parts_of(asked)]
+    assert seen == ["lip.step", "curves.step"]
+    assert len({task.contents[0].sha256 for task in tasks}) == 1
+    assert task_of(asked[0]).key != tasks[0].key
 
 
 @pytest.mark.parametrize("output", [one for one in OUTPUTS if not one.always], ids=lambda one: str(one.name))

@@ -16,7 +16,7 @@ from cadpanel.jobs.read import read_job
 from cadpanel.jobs.region import Job
 from cadpanel.jobs.run import Place, make_regions
 from cadpanel.jobs.summary import RowModel, SummaryModel
-from cadpanel.jobs.task import task_of
+from cadpanel.jobs.task import parts_of
 from cadpanel.kinds import checked
 
 __all__ = ["RowModel", "SummaryModel", "run_job"]
@@ -88,7 +88,7 @@ def run_regions(
     from cadpanel.jobs.results import Results, usual_folder  # dear at every start, and for jobs alone
 
     source_date()  # refused before anything else is done
-    parts = [(region, task_of(region, os.environ.get(VARIABLE))) for region in asked.regions]
+    parts = parts_of(asked.regions, os.environ.get(VARIABLE))
     with ExitStack() as opened:
         results = opened.enter_context(Results(usual_folder() if cache is None else Path(cache)))
         return make_regions(parts, place, _engine(opened, workers, scheduler), results, tell_steps)

@@ -18,6 +18,8 @@ from cadpanel.delivery.file_names import file_names
 from cadpanel.errors import CadpanelError, ReferenceFileError
 from cadpanel.fitting.run import fit
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.jobs.names import RESERVED
+from cadpanel.jobs.variables import escaped
 from cadpanel.reference.settings import ReferenceSettings
 
 if TYPE_CHECKING:
@@ -87,7 +89,7 @@ def _ready_made(file: Path, how: ReferenceSettings) -> Begun | None:
 
 
 def _regions(file: Path, how: ReferenceSettings, found: Survey) -> Iterator[Begun]:
-    names = file_names([surface.name for surface in found.surfaces], _LONGEST_NAME)
+    names = file_names([surface.name for surface in found.surfaces], _LONGEST_NAME, RESERVED)
     for name, surface in zip(names, found.surfaces, strict=True):
         faces: dict[str, Any] = {} if len(found.surfaces) == 1 else {"faces": _ranges(surface.faces)}
         yield _first_that_works(file, how, name, surface, faces)
@@ -154,7 +156,7 @@ def _text(file: Path, how: ReferenceSettings, folder: Path, regions: Sequence[Be
     changed = {one.name: getattr(how, one.name) for one in fields(how) if getattr(how, one.name) != one.default}
     asked = {name: value for name, value in changed.items() if name != "faces" or len(regions) == 1}
     lines = [
-        f"# A job for '{file.name}', as it was measured; 'cadpanel run' of this file makes it.",
+        f"# A job for '{_printable(file.name)}', as it was measured; 'cadpanel run' of this file makes it.",
         "# Settings are the options of 'cadpanel fit', with _ for -: 'cadpanel fit --help' says what each means.",
         "",
         "[defaults]                # hold for every region that does not say otherwise",
@@ -168,7 +170,7 @@ def _text(file: Path, how: ReferenceSettings, folder: Path, regions: Sequence[Be
     for region in regions:
         lines += ["", f"# {region.measured}"]
         if region.refused:
-            lines += [f"# No way was found to cut it: {' '.join(region.refused.split())}"]
+            lines += [f"# No way was found to cut it: {_printable(' '.join(region.refused.split()))}"]
         head = tomli_w.dumps({"regions": {region.name: {"x": 0}}}).splitlines()[0]
         marked = "# " if region.refused else ""
         lines += [f"{marked}{head}", *(f"{marked}{_line(name, value)}" for name, value in region.values.items())]
@@ -188,7 +190,12 @@ def _line(name: str, value: Any) -> str:
 def _plain(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_plain, value))}]"
-    return tomli_w.dumps({"x": value}).partition("= ")[2].strip()
+    return tomli_w.dumps({"x": escaped(value)}).partition("= ")[2].strip()
+
+
+def _printable(text: str) -> str:
+    """What may stand in a comment."""
+    return "".join(sign if sign.isprintable() else "_" for sign in text)
 
 
 def _relative(file: Path, folder: Path) -> str:
@@ -210,4 +217,4 @@ def _ranges(numbers: Sequence[int]) -> tuple[str, ...]:
 
 
 def _name(text: str) -> str:
-    return file_names([text], _LONGEST_NAME)[0]
+    return file_names([text], _LONGEST_NAME, RESERVED)[0]

@@ -18,7 +18,7 @@ def line_of(text: str, path: Sequence[str]) -> int:
         text: a file that is TOML.
         path: the names of the tables from the outermost in, then that of the key.
     """
-    lines = text.splitlines(keepends=True)
+    lines = [f"{line}\n" for line in text.split("\n")]  # only these end a line for TOML, and for editors
     whole = tomllib.loads(text)
     known = list(path)
     while known and not _holds(whole, known):

@@ -21,6 +21,7 @@ class Region:
         name: also that of its folder.
         reference: the file.
         sha256: of the file's bytes; empty where any will do.
+        deliveries: where the earlier deliveries lie that panels are locked to, by the names that rules have for these.
         given: the settings as the job has them, as TOML knows them; files by their whole paths, rules as their file has
             them.
         how, settings, sheet, shop: what these make.
@@ -29,6 +30,7 @@ class Region:
     name: str
     reference: Path
     sha256: str
+    deliveries: Mapping[str, Path]
     given: Mapping[str, Any]
     how: ReferenceSettings
     settings: FitSettings

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import os
+from codecs import BOM_UTF8
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 
+from cadpanel.jobs.program import program
 from cadpanel.jobs.region import Region
-from cadpanel.jobs.schema import RULES, asked
-from cadpanel.jobs.task import Task, program
+from cadpanel.jobs.schema import DELIVERIES, REFERENCE, RULES, SHA256, asked
+from cadpanel.jobs.task import Task
+from cadpanel.jobs.variables import escaped
 
 _MARK = "# A job of cadpanel"
 
@@ -40,7 +43,8 @@ def is_a_job(path: Path) -> bool:
         OSError: it cannot be read.
     """
     with path.open("rb") as file:
-        return file.read(len(_MARK)) == _MARK.encode()
+        # Some editors put a mark before the text that they save.
+        return file.read(len(_MARK) + len(BOM_UTF8)).removeprefix(BOM_UTF8).startswith(_MARK.encode())
 
 
 def _plain(region: Region, task: Task, folder: Path) -> Mapping[str, Any]:
@@ -48,7 +52,15 @@ def _plain(region: Region, task: Task, folder: Path) -> Mapping[str, Any]:
         key: _from(folder, value) if key != RULES and asked()[key].is_file else value
         for key, value in region.given.items()
     }
-    return {"reference": _from(folder, region.reference), "sha256": task.contents[0].sha256, **given}
+    lying = {name: _from(folder, place) for name, place in region.deliveries.items()}
+    whole = {
+        REFERENCE: _from(folder, region.reference),
+        SHA256: task.contents[0].sha256,
+        **({DELIVERIES: lying} if lying else {}),
+        **given,
+    }
+    plain: Mapping[str, Any] = escaped(whole)
+    return plain
 
 
 def _from(folder: Path, path: str | Path) -> str:

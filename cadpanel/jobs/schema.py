@@ -28,6 +28,8 @@ KINDS: tuple[type[Any], ...] = (ReferenceSettings, FitSettings, SheetSettings, S
 OF_A_FILE = "FILE"
 """What stands for the value of an option that names a file."""
 RULES = "rules"
+REFERENCE, SHA256, DELIVERIES, MATRIX = "reference", "sha256", "deliveries", "matrix"
+"""What stands in a region besides settings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +75,8 @@ def region_values() -> TypeAdapter[dict[str, Any]]:
     """What checks the values of a region: the reference and every setting, by types alone."""
     settings: dict[str, Any] = {name: NotRequired[_toml_type(one)] for name, one in asked().items()}
     # A dictionary with these keys, and no class with attributes: one of the settings is called "schema".
-    values = TypedDict("values", {"reference": str, "sha256": NotRequired[str], **settings})  # type: ignore[misc]
+    others = {REFERENCE: str, SHA256: NotRequired[str], DELIVERIES: NotRequired[dict[str, str]]}
+    values = TypedDict("values", {**others, **settings})  # type: ignore[misc]
     values.__pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)  # type: ignore[attr-defined]
     checked: TypeAdapter[dict[str, Any]] = TypeAdapter(values)  # type: ignore[arg-type] # made here
     return checked

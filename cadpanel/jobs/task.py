@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 from typing import Any
 
+from cadpanel.brep.files.text_check import MARGIN_BYTES, RHINO_START
+from cadpanel.delivery.outputs.catalogue import chosen_outputs
 from cadpanel.delivery.own_files import REPORT
 from cadpanel.delivery.settings import SheetSettings
 from cadpanel.delivery.shop_settings import ShopSettings
 from cadpanel.errors import SettingsError
-from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.settings import FitSettings
+from cadpanel.jobs.program import program, program_sum
 from cadpanel.jobs.region import Region
 from cadpanel.jobs.schema import RULES, asked
 from cadpanel.reference.settings import ReferenceSettings
+
+_RHINO = "rhino3dm"
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +32,13 @@ class Content:
         name: of the file, as reports tell it.
         sha256: of its bytes.
         path: where it lies for whoever made the task.
+        needs: the package that reads it, if one is needed besides those that are always there.
     """
 
     name: str
     sha256: str
     path: Path
+    needs: str = ""
 
     def read(self) -> bytes:
         """Its bytes.
@@ -64,7 +68,8 @@ class Task:
         how: how the reference is read; what is read beside it is named by `beside` alone.
         settings, sheet, shop: how panels are fitted, built and delivered.
         date: the date of files, as SOURCE_DATE_EPOCH has it; None for the present.
-        program: the sum of the program that is to make it.
+        needs: packages that it needs besides those that are always there: what reads its files, and writes its outputs.
+        program: the sum of the program that is to make it, these packages included.
     """
 
     name: str
@@ -77,16 +82,51 @@ class Task:
     sheet: SheetSettings
     shop: ShopSettings
     date: str | None
+    needs: tuple[str, ...]
     program: str
 
 
-def task_of(region: Region, date: str | None = None) -> Task:
+class Files:
+    """The files of a run: each is looked at once, and is the same for all regions that are about it."""
+
+    def __init__(self) -> None:
+        """Nothing was looked at yet."""
+        self._known = dict[Path, Content]()
+
+    def content(self, path: Path) -> Content:
+        """What a file holds, or held when it was first asked for.
+
+        Raises:
+            SettingsError: it cannot be read.
+        """
+        if path not in self._known:
+            self._known[path] = _content(path)
+        return self._known[path]
+
+
+def parts_of(regions: Sequence[Region], date: str | None = None) -> list[tuple[Region, Task]]:
+    """The regions of a run with their tasks.
+
+    Raises:
+        SettingsError: as `task_of` says.
+    """
+    files = Files()
+    return [(region, task_of(region, date, files)) for region in regions]
+
+
+def task_of(region: Region, date: str | None = None, files: Files | None = None) -> Task:
     """The task of a region.
+
+    Args:
+        region: what is to be made.
+        date: of files, as SOURCE_DATE_EPOCH has it.
+        files: those of the run; looked at now if None.
 
     Raises:
         SettingsError: a file cannot be read, or the reference is another one than the job was made for.
     """
-    contents = [_content(region.reference)]
+    files = files or Files()
+    contents = [files.content(region.reference)]
     if region.sha256 and region.sha256 != contents[0].sha256:
         raise SettingsError(
             f"'{region.reference}' of region '{region.name}' is not the file that the job was made with: bring that "
@@ -96,15 +136,15 @@ def task_of(region: Region, date: str | None = None) -> Task:
     if file is not None:
         other = region.how.beside(region.reference)
         beside = 0 if other is None else len(contents)
-        contents += [] if other is None else [_content(other)]
+        contents += [] if other is None else [files.content(other)]
     locks: dict[str, int] = {}
-    for rule in () if region.settings.rules is None else region.settings.rules.rules:
-        if isinstance(rule, LockRule) and rule.unread and rule.delivery not in locks:
-            locks[rule.delivery] = len(contents)
-            contents.append(_content(Path(rule.delivery) / REPORT))
+    for name, place in region.deliveries.items():
+        locks[name] = len(contents)
+        contents.append(files.content(place / REPORT))
+    needs = _needs(region, contents)
     return Task(
         name=region.name,
-        key=_key(region, contents, date),
+        key=_key(region, contents, date, needs),
         contents=tuple(contents),
         beside=beside,
         locks=locks,
@@ -113,7 +153,8 @@ def task_of(region: Region, date: str | None = None) -> Task:
         sheet=region.sheet,
         shop=region.shop,
         date=date,
-        program=program_sum(),
+        needs=needs,
+        program=program_sum(needs),
     )
 
 
@@ -126,11 +167,16 @@ def located(how: ReferenceSettings, beside: Path | None) -> ReferenceSettings:
     return replace(how, **changes)
 
 
-def _key(region: Region, contents: list[Content], date: str | None) -> str:
+def _needs(region: Region, contents: list[Content]) -> tuple[str, ...]:
+    found = {package for output in chosen_outputs(region.shop.outputs) for package in output.needs}
+    return tuple(sorted(found | {content.needs for content in contents if content.needs}))
+
+
+def _key(region: Region, contents: list[Content], date: str | None, needs: tuple[str, ...]) -> str:
     """Of all that the result depends on: contents, settings, and the program with what it computes with."""
     given = {name: value for name, value in region.given.items() if name == RULES or not asked()[name].is_file}
     told = {
-        "program": program(),
+        "program": program(needs),
         "date": date,
         "contents": [(content.name, content.sha256) for content in contents],
         "beside": sorted(name for name in region.given if name != RULES and asked()[name].is_file),
@@ -143,40 +189,8 @@ def _content(path: Path) -> Content:
     try:
         with path.open("rb") as file:
             digest = hashlib.file_digest(file, "sha256").hexdigest()
+            file.seek(0)
+            needs = _RHINO if RHINO_START.match(file.read(MARGIN_BYTES)) else ""
     except OSError as error:
         raise SettingsError(f"'{path}' cannot be read: {error.strerror or error}") from error
-    return Content(path.name, digest, path)
-
-
-@cache
-def program() -> Mapping[str, Any]:
-    """Which program it is: its version, its own text, and the versions of what it computes with."""
-    text = hashlib.sha256()
-    home = Path(__file__).parents[1]
-    for file in sorted(home.rglob("*.py")):
-        text.update(file.relative_to(home).as_posix().encode() + b"\0" + file.read_bytes())
-    return {"version": version("cadpanel"), "text": text.hexdigest(), "packages": _packages()}
-
-
-def program_sum() -> str:
-    """The same in one word."""
-    return hashlib.sha256(json.dumps(program(), sort_keys=True).encode()).hexdigest()
-
-
-def _packages() -> dict[str, str]:
-    names = {line.split(";")[0].split("[")[0] for line in requires("cadpanel") or () if "extra ==" not in line}
-    bare = {"".join(sign for sign in _before(name) if not sign.isspace()) for name in (*names, "cadquery-ocp")}
-    found = {}
-    for name in sorted(bare):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue  # another package of the same content
-    return found
-
-
-def _before(requirement: str) -> str:
-    """A package's name without the versions that are wanted."""
-    for sign in "<>=!~ (":
-        requirement = requirement.partition(sign)[0]
-    return requirement
+    return Content(path.name, digest, path, needs)

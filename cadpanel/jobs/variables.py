@@ -1,62 +1,67 @@
-"""Variables, `${name}`, and matrices: one region for every combination of some values."""
+"""Variables, `${name}`: what they stand for, and which of them a value needs."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
+from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from cadpanel.errors import SettingsError
 from cadpanel.near import near_names
 
 _NAMED = re.compile(r"\$(\$(?=\{)|\{(?P<name>[^{}]*)\})")
+_NOWHERE: Mapping[str, str] = MappingProxyType({})
 
 
-def substituted(value: Any, variables: Mapping[str, Any]) -> Any:
+def substituted(value: Any, variables: Mapping[str, Any], elsewhere: Mapping[str, str] = _NOWHERE) -> Any:
     """A value with the variables in its texts; a text that is one variable alone becomes what the variable is.
 
     `$${` stands for `${`.
 
+    Args:
+        value: as TOML has it.
+        variables: that are known here.
+        elsewhere: what to say of names that are not known here, and are in another place.
+
     Raises:
         SettingsError: there is no variable of a name.
     """
+
+    def known(name: str) -> Any:
+        if name in variables:
+            return variables[name]
+        raise SettingsError(elsewhere.get(name) or f"there is no variable '{name}'; {near_names(name, variables)}")
+
+    def in_text(text: str) -> Any:
+        alone = _NAMED.fullmatch(text)
+        if alone is not None and alone["name"] is not None:
+            return known(alone["name"])
+        return _NAMED.sub(lambda found: "$" if found["name"] is None else str(known(found["name"])), text)
+
+    return _in_texts(value, in_text)
+
+
+def escaped(value: Any) -> Any:
+    """The value that becomes this one when variables are put in their places, whatever signs stand in it."""
+    return _in_texts(value, lambda text: text.replace("${", "$${"))
+
+
+def names_in(value: Any) -> Iterator[str]:
+    """The names of all variables in a value."""
     if isinstance(value, Mapping):
-        return {key: substituted(inner, variables) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [substituted(inner, variables) for inner in value]
-    if not isinstance(value, str):
-        return value
-    alone = _NAMED.fullmatch(value)
-    if alone is not None and alone["name"] is not None:
-        return _looked_up(alone["name"], variables)
-    return _NAMED.sub(lambda found: "$" if found["name"] is None else str(_looked_up(found["name"], variables)), value)
+        for inner in value.values():
+            yield from names_in(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from names_in(inner)
+    elif isinstance(value, str):
+        yield from (found["name"] for found in _NAMED.finditer(value) if found["name"] is not None)
 
 
-def resolved(variables: Mapping[str, Any]) -> dict[str, Any]:
-    """Variables in which those before them may stand.
-
-    Raises:
-        SettingsError: one is used that does not stand before.
-    """
-    found: dict[str, Any] = {}
-    for name, value in variables.items():
-        found[name] = substituted(value, found)
-    return found
-
-
-def combinations(matrix: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Every combination of the values, the first name changing slowest, and what is put behind a region's name."""
-    for values in product(*matrix.values()):
-        chosen = dict(zip(matrix, values, strict=True))
-        yield "".join(f"-{name}={_told(value)}" for name, value in chosen.items()), chosen
-
-
-def _told(value: Any) -> str:
-    return "x".join(map(_told, value)) if isinstance(value, list) else str(value)
-
-
-def _looked_up(name: str, variables: Mapping[str, Any]) -> Any:
-    if name not in variables:
-        raise SettingsError(f"there is no variable '{name}'; {near_names(name, variables)}")
-    return variables[name]
+def _in_texts(value: Any, change: Callable[[str], Any]) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _in_texts(inner, change) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(_in_texts(inner, change) for inner in value)
+    return change(value) if isinstance(value, str) else value

@@ -27,7 +27,8 @@ from cadpanel.delivery.work_folders import clear_left_behind, work_folder
 from cadpanel.errors import CadpanelError, DeliveryError, ProofError
 from cadpanel.jobs.archive import packed
 from cadpanel.jobs.make import Asked, make_delivery
-from cadpanel.jobs.task import Content, Task, located, program, program_sum
+from cadpanel.jobs.program import program, program_sum
+from cadpanel.jobs.task import Content, Task, located
 from cadpanel.memory import give_back
 
 RETRIES = 2
@@ -80,8 +81,11 @@ def work(task: Task, contents: Sequence[Content | bytes], tell: Tell, *, side_by
     Raises:
         KeyboardInterrupt, SystemExit: somebody ends the program, whatever error that comes out as.
     """
-    if task.program != program_sum():
-        said = f"the worker has another cadpanel, {program()['version']}, or other packages: install one everywhere"
+    if task.program != program_sum(task.needs):
+        said = (
+            f"the worker has another cadpanel, {program()['version']}, another Python or other packages: install one "
+            "everywhere"
+        )
         return refused(task, said)
     for tries in itertools.count(1):
         try:

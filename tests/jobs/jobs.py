@@ -10,7 +10,7 @@ from cadpanel.jobs.read import read_job
 from cadpanel.jobs.results import Results
 from cadpanel.jobs.run import Part, Place, make_regions
 from cadpanel.jobs.summary import SummaryModel
-from cadpanel.jobs.task import task_of
+from cadpanel.jobs.task import parts_of
 from fixtures.lips import Lip
 from fixtures.make_fixtures import Fixture, write
 
@@ -35,7 +35,7 @@ def job(folder: Path, regions: str, defaults: str = "") -> Path:
 
 def parts(path: Path) -> list[Part]:
     """The regions of a job with their tasks, dated."""
-    return [(region, task_of(region, DATE)) for region in read_job(path).regions]
+    return parts_of(read_job(path).regions, DATE)
 
 
 def made(path: Path, out: Path, results: Results | None = None, engine: Engine | None = None) -> SummaryModel:

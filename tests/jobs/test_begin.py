@@ -14,7 +14,9 @@ from cadpanel.brep.skin.conjugate import SeamLean
 from cadpanel.brep.survey import SurfaceSurvey
 from cadpanel.errors import PanelError, ReferenceFileError
 from cadpanel.jobs import begin as module
-from cadpanel.jobs.begin import begun_job
+from cadpanel.jobs.begin import Begun, begun_job
+from cadpanel.jobs.names import first_fault
+from cadpanel.jobs.variables import substituted
 from cadpanel.reference.settings import ReferenceSettings
 
 LEANING = SeamLean(mean=5.0, largest=9.0, at=100.0)
@@ -60,12 +62,12 @@ def test_every_surface_has_the_first_way_to_cut_that_gives_panels(begun: Any) ->
     surfaces = [
         surface("S1", (1, 2, 3, 7), (9000.0, 800.0), seams=LEANING),
         surface("Roof, north", (4,), (9000.0, 8000.0)),
-        surface("S3", (5, 6), None),
+        surface("Job.toml", (5, 6), None),
     ]
     assert begun(surfaces, reads=lambda how: how.way is not None) == {
         "S1": {"faces": ["1-3", "7"], "panel_length": 2000.0, "seams": "conjugate", "feature": "cone"},
         "Roof, north": {"faces": ["4"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
-        "S3": {"faces": ["5-6"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
+        "Job.toml-2": {"faces": ["5-6"], "panel_size": [1000.0, 1000.0], "feature": "cone"},
     }
     found = begun(surfaces[:1], reads=lambda how: how.way == "grid", fits=lambda _, feature: feature != "cone")
     assert found == {"S1": {"grid": [2, 2], "feature": "planar-quadrilateral"}}
@@ -76,6 +78,18 @@ def test_a_surface_that_nothing_cuts_is_left_out_and_a_file_of_such_is_refused(b
     assert set(begun(surfaces, reads=lambda how: how.faces == ("1",) and how.way == "panel_length")) == {"S1"}
     with pytest.raises(ReferenceFileError, match=r"no way was found to cut 'skin\.brep' into panels: it cannot be cut"):
         begun(surfaces, reads=lambda _: False)
+
+
+@pytest.mark.parametrize("name", ["${x}.step", "a\n[b]\x07.step", "job.toml.step", "$${x}'.step"])
+def test_whatever_a_file_is_called_it_is_named_as_it_is(tmp_path: Path, name: str) -> None:
+    """Among the names some that would be a variable, end a comment, or be the file of a job."""
+    good = Begun(module._name(Path(name).stem), "", {"faces": ("name=${y}",)})
+    bad = Begun("S2", "", {}, "it\x07is")
+    read = tomllib.loads(module._text(tmp_path / name, ReferenceSettings(), tmp_path, (good, bad)))
+    assert substituted(read["defaults"]["reference"], {}) == name
+    ((region, values),) = read["regions"].items()
+    assert first_fault([region], [True]) is None
+    assert substituted(values, {}) == {"faces": ["name=${y}"]}
 
 
 def test_lengths_to_begin_with_have_two_digits() -> None:

@@ -42,6 +42,11 @@ def test_a_key_stands_on_the_line_that_it_is_written_on(path: tuple[str, ...], l
     assert line_of(TEXT, path) == line
 
 
+def test_only_ends_of_lines_end_one() -> None:
+    """Python knows more of them than TOML and editors."""
+    assert line_of('a = "\u2028\x85"\nb = 1\r\nc = 2\n', ("c",)) == 3
+
+
 def test_what_is_not_there_is_missing_in_the_table_around_it() -> None:
     assert line_of(TEXT, ("regions", "A", "reference")) == line_of(TEXT, ("regions", "A")) == 10
     assert line_of(TEXT, ("variables", "a")) == 1

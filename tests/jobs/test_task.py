@@ -5,17 +5,22 @@ from pathlib import Path
 
 import pytest
 
+from cadpanel.delivery.outputs.catalogue import OUTPUTS
+from cadpanel.delivery.outputs.output import Output
 from cadpanel.errors import SettingsError
+from cadpanel.jobs import task as module
+from cadpanel.jobs.program import program, program_sum
 from cadpanel.jobs.read import read_job
 from cadpanel.jobs.region import Region
-from cadpanel.jobs.task import located, program, task_of
+from cadpanel.jobs.task import Content, located, parts_of, task_of
 from cadpanel.reference.settings import ReferenceSettings
 from tests.jobs.jobs import job
 
 
-def regions(folder: Path, strip: Path, text: str) -> list[Region]:
+def regions(folder: Path, strip: Path, text: str, *others: str) -> list[Region]:
     folder.mkdir(exist_ok=True)
-    (folder / "lip.step").write_bytes((strip / "lip.step").read_bytes())
+    for name in ("lip.step", *others):
+        (folder / name).write_bytes((strip / "lip.step").read_bytes())
     return list(read_job(job(folder, text)).regions)
 
 
@@ -69,6 +74,42 @@ def test_an_earlier_delivery_that_panels_are_locked_to_counts_by_its_report(
     assert task_of(a).key != task.key
 
 
-def test_the_program_is_told_by_its_text_and_what_it_computes_with() -> None:
-    assert len(program()["text"]) == 64
-    assert {"numpy", "scipy", "cadquery", "cadquery-ocp"} <= set(program()["packages"])
+def test_files_are_looked_at_once_a_run(tmp_path: Path, strip: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So all regions of a run are about the same bytes, whoever writes them meanwhile."""
+    seen, look = list[str](), module._content
+
+    def looked(path: Path) -> Content:
+        seen.append(path.name)
+        found = look(path)
+        path.write_bytes(path.read_bytes() + b"\n")
+        return found
+
+    asked = regions(tmp_path, strip, 'A = {}\nB = {network = "lip.step"}\nC = {network = "curves.step"}', "curves.step")
+    monkeypatch.setattr(module, "_content", looked)
+    tasks = [task for _, task in parts_of(asked)]
+    assert seen == ["lip.step", "curves.step"]
+    assert len({task.contents[0].sha256 for task in tasks}) == 1
+    assert task_of(asked[0]).key != tasks[0].key
+
+
+@pytest.mark.parametrize("output", [one for one in OUTPUTS if not one.always], ids=lambda one: str(one.name))
+def test_a_task_needs_what_its_outputs_are_written_with(tmp_path: Path, strip: Path, output: Output) -> None:
+    (a,) = regions(tmp_path, strip, f'A = {{outputs = ["{output.name}"]}}')
+    assert task_of(a).needs == tuple(sorted(output.needs))
+    assert task_of(a).program == program_sum(tuple(sorted(output.needs)))
+
+
+def test_a_task_needs_what_its_files_are_read_with_whatever_they_are_called(tmp_path: Path, strip: Path) -> None:
+    (tmp_path / "rhino.step").write_bytes(b"3D Geometry File Format ")
+    own, other = regions(tmp_path, strip, 'A = {reference = "rhino.step"}\nB = {network = "rhino.step"}')
+    assert task_of(own).needs == task_of(other).needs == ("rhino3dm",)
+
+
+def test_the_key_hangs_on_the_program_with_what_the_task_needs(
+    tmp_path: Path, strip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sheet, plain = regions(tmp_path, strip, 'A = {outputs = ["xlsx"]}\nB = {}')
+    before = task_of(sheet).key, task_of(plain).key
+    monkeypatch.setattr(module, "program", lambda needs: {**program(), **({"new": needs} if needs else {})})
+    assert task_of(sheet).key != before[0]
+    assert task_of(plain).key == before[1]

@@ -1,11 +1,24 @@
 from __future__ import annotations
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from cadpanel.errors import SettingsError
-from cadpanel.jobs.variables import combinations, resolved, substituted
+from cadpanel.jobs.variables import escaped, names_in, substituted
 
 KNOWN = {"n": 3, "folder": "a/b", "grid": [2, 4], "on": True}
+VALUES = st.recursive(
+    st.text("${}a") | st.integers() | st.booleans(),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text("${}a"), inner, max_size=3),
+    max_leaves=6,
+)
+
+
+@given(VALUES)
+def test_what_is_escaped_means_itself_whatever_stands_in_it(value: object) -> None:
+    assert substituted(escaped(value), {}) == value
+    assert list(names_in(escaped(value))) == []
 
 
 @pytest.mark.parametrize(
@@ -23,24 +36,18 @@ def test_a_variable_alone_keeps_its_type_and_in_a_text_is_text(written: object, 
     assert substituted(written, KNOWN) == meant
 
 
-def test_a_variable_that_there_is_not_is_refused_with_the_nearest() -> None:
+def test_the_names_that_a_value_needs_are_those_without_which_it_is_refused() -> None:
+    value = {"x": ["${n}", 1.5, "$${on}"], "y": {"z": "${folder}/${n}"}}
+    names = list(names_in(value))
+    assert names == ["n", "folder", "n"]
+    for name in names:
+        with pytest.raises(SettingsError, match=f"no variable '{name}'"):
+            substituted(value, {other: 1 for other in names if other != name})
+
+
+def test_a_variable_that_there_is_not_is_refused_with_the_nearest_or_with_where_it_is() -> None:
     with pytest.raises(SettingsError, match="no variable 'foldr'; perhaps 'folder' is meant"):
         substituted("${foldr}", KNOWN)
-
-
-def test_variables_may_be_made_of_those_before_them_alone() -> None:
-    assert resolved({"a": "x", "b": "${a}y", "c": "${b}z"})["c"] == "xyz"
-    with pytest.raises(SettingsError):
-        resolved({"b": "${a}", "a": "x"})
-
-
-def test_a_matrix_has_every_combination_once_and_each_a_name_of_its_own() -> None:
-    found = list(combinations({"gap": [1, 3.5], "grid": [[2, 4], "2x5"]}))
-    assert [name for name, _ in found] == [
-        "-gap=1-grid=2x4",
-        "-gap=1-grid=2x5",
-        "-gap=3.5-grid=2x4",
-        "-gap=3.5-grid=2x5",
-    ]
-    assert found[2][1] == {"gap": 3.5, "grid": [2, 4]}
-    assert list(combinations({})) == [("", {})]
+    with pytest.raises(SettingsError, match="it is elsewhere"):
+        substituted("${foldr}", KNOWN, {"foldr": "it is elsewhere"})
+    assert substituted("${n}", KNOWN, {"n": "it is elsewhere"}) == 3

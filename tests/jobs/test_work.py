@@ -49,6 +49,12 @@ def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Errors]:
     return fail
 
 
+def test_a_worker_with_other_packages_than_the_task_needs_is_refused(task: Task) -> None:
+    found = run(replace(task, needs=("openpyxl",)))
+    assert (found.code, found.archive) == (REFUSED, None)
+    assert "other packages" in (found.said or "")
+
+
 def run(task: Task) -> module.Made:
     return work(task, [content.read() for content in task.contents], lambda *_: None)
 

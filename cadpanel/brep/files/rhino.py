@@ -5,7 +5,6 @@ What lies on a layer that is switched off, or is hidden, is left out with a note
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from importlib import import_module
 from pathlib import Path
@@ -21,12 +20,12 @@ from cadpanel.brep.files.model import Label, Model, Part
 from cadpanel.brep.files.opennurbs import ConversionError, curve_edge, surface_face
 from cadpanel.brep.files.opennurbs_faces import Faces, brep_faces
 from cadpanel.brep.files.rhino_objects import Placed, RhinoFile, RhinoObject, placed_objects, put
+from cadpanel.brep.files.text_check import RHINO_START
 from cadpanel.brep.files.units import unit_taken
 from cadpanel.brep.kernel.shapes import compound_of, shapes_of
 from cadpanel.brep.kernel.transforms import scaled
 from cadpanel.errors import ReferenceFileError
 
-MAGIC = re.compile(rb"\s*3D Geometry File Format")
 # The units that Rhino knows, by its names for them: what they are called here, and how many mm they have.
 UNITS = {
     "Microns": ("micrometre", 1e-3),
@@ -166,7 +165,7 @@ def _nothing_read(name: str, left_out: Counter[str]) -> ReferenceFileError:
 RHINO = Format(
     name="Rhino",
     suffixes=(".3dm",),
-    recognises=lambda head: MAGIC.match(head) is not None,
+    recognises=lambda head: RHINO_START.match(head) is not None,
     check=check_nothing,
     read=_read,
 )

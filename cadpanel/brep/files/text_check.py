@@ -20,6 +20,7 @@ READABLE = "cadpanel reads STEP files (AP203, AP214 or AP242), IGES, .brep and R
 MARGIN_BYTES = 4096
 START = b"ISO-10303-21"
 END = b"END-ISO-10303-21"
+RHINO_START = re.compile(rb"\s*3D Geometry File Format")
 
 # First bytes of what people hand over by mistake, and what to call it.
 OTHER_FORMATS = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +18,7 @@ from cadpanel.fitting.rules.lock import LockRule
 from cadpanel.fitting.rules.rule import Posed, Rule
 from cadpanel.reference.model import Reference
 from cadpanel.reference.named import near_names
-from cadpanel.sizes import refuse_huge
+from cadpanel.toml_file import read_toml
 
 # A gap is no longer than so many times the root of the sum of its parts' squares.
 _MORE = 2.0
@@ -106,22 +105,10 @@ def rules_of(value: object) -> Rules | None:
     if value is None or isinstance(value, Rules):
         return value
     if isinstance(value, str | Path):
-        return _parsed(_read(Path(value)), f"'{value}': ")
+        return _parsed(read_toml(Path(value), "the file of rules")[1], f"'{value}': ")
     if isinstance(value, Mapping):
         return _parsed(value, "")
     raise SettingsError(f"rules are the name of a TOML file, or what it would hold, not {value!r:.80}")
-
-
-def _read(path: Path) -> Mapping[str, Any]:
-    refuse_huge(path, SettingsError)
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SettingsError(f"the rules '{path}' cannot be read: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise SettingsError(f"the rules '{path}' are no text in UTF-8: save the file as such") from error
-    except tomllib.TOMLDecodeError as error:
-        raise SettingsError(f"the rules '{path}' are no TOML: {error}") from error
 
 
 def _parsed(given: Mapping[str, Any], where: str) -> Rules:

@@ -86,7 +86,7 @@ def test_what_is_no_rule_is_refused_in_one_sentence(rules: object, said: str) ->
 
 def test_a_file_that_is_no_toml_is_told_with_its_line(tmp_path: Path) -> None:
     (tmp_path / "rules.toml").write_text("[shop]\nradii = 300,", encoding="utf-8")
-    with pytest.raises(SettingsError, match=r"rules.toml' are no TOML: .*line 2"):
+    with pytest.raises(SettingsError, match=r"rules.toml' is no TOML: .*line 2"):
         rules_of(tmp_path / "rules.toml")
 
 

@@ -104,5 +104,7 @@ def run(
         for row in summary.rows:
             if row.said:
                 complain(f"{row.region}: {row.said}\n")
+        for remark in summary.remarks:
+            complain(f"{remark}\n")
     if summary.code:
         raise typer.Exit(summary.code)

@@ -20,7 +20,7 @@ from cadpanel.jobs.run import Place, make_regions
 from cadpanel.jobs.summary import SummaryModel, read_summary
 from cadpanel.jobs.task import Task
 from cadpanel.jobs.work import FAILED, MET, REFUSED, Made
-from tests.jobs.jobs import files, job, made, parts
+from tests.jobs.jobs import DATE, files, job, made, parts
 
 
 class Counting:
@@ -245,8 +245,9 @@ def test_two_runs_do_not_write_into_one_folder_and_the_summary_is_of_the_one_at_
 
 
 def test_what_was_to_be_made_anew_and_was_not_still_hangs_in_the_building(
-    strip: Path, source: Path, tmp_path: Path
+    strip: Path, source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", DATE)
     path, out = job(strip, THREE), tmp_path / "out"
     made(path, out, None, Counting(source))
     building = (out / "building.step").read_bytes()

@@ -31,7 +31,11 @@ JobOut = Annotated[
 ]
 Replace = Annotated[
     bool,
-    typer.Option("--overwrite", help="Replace deliveries of regions that have changed since.", rich_help_panel=OUTPUT),
+    typer.Option(
+        "--overwrite",
+        help="Replace deliveries of regions that have changed since, and go on where a job of other regions has been.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
 Workers = Annotated[
     int | None,

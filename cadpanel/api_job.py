@@ -46,7 +46,7 @@ def run_job(
             `if __name__ == "__main__":`, as every worker reads the script again.
         scheduler: address of a Dask scheduler whose workers do it, "tcp://HOST:PORT".
         cache: folder of earlier results; that of this system for such files if not given.
-        overwrite: replace deliveries of regions that have changed since.
+        overwrite: replace deliveries of regions that have changed since, and go on where a job of other regions was.
         fresh: make all regions anew, whatever was made before.
         tell: called with the row of a region as soon as it is done.
 
@@ -55,7 +55,7 @@ def run_job(
 
     Raises:
         SettingsError: the job is refused as a whole, or nobody is there to work at it.
-        DeliveryError: the folder is no job's, or holds another delivery that may not be replaced.
+        DeliveryError: the folder is no job's, holds another delivery that may not be replaced, or another run is at it.
     """
     place = Place(
         out=target_of(asked := read_job(Path(job)), out),

@@ -31,7 +31,11 @@ JobOut = Annotated[
 ]
 Replace = Annotated[
     bool,
-    typer.Option("--overwrite", help="Replace deliveries of regions that have changed since.", rich_help_panel=OUTPUT),
+    typer.Option(
+        "--overwrite",
+        help="Replace deliveries of regions that have changed since, and go on where a job of other regions has been.",
+        rich_help_panel=OUTPUT,
+    ),
 ]
 Workers = Annotated[
     int | None,
@@ -104,5 +108,7 @@ def run(
         for row in summary.rows:
             if row.said:
                 complain(f"{row.region}: {row.said}\n")
+        for remark in summary.remarks:
+            complain(f"{remark}\n")
     if summary.code:
         raise typer.Exit(summary.code)

@@ -36,7 +36,10 @@ def print_summary(summary: SummaryModel, out: Path, seconds: float) -> None:
         if row.said:
             shown.print(Text(f"{row.region}: {row.said}"), soft_wrap=True)
     if summary.unassembled:
-        shown.print(Text(f"No assembly of all regions: {summary.unassembled}"), soft_wrap=True)
+        begin = f"Not all regions hang in {summary.assembly}" if summary.assembly else "No assembly of all regions"
+        shown.print(Text(f"{begin}: {summary.unassembled}"), soft_wrap=True)
+    for remark in summary.remarks:
+        shown.print(Text(remark), soft_wrap=True)
     shown.print(Text(_end(summary.rows, out, seconds)), soft_wrap=True)
 
 

@@ -11,13 +11,16 @@ from cadpanel.brep.isolation.client import start_reader
 from cadpanel.cli import options
 from cadpanel.cli.printable import complain
 from cadpanel.cli.steps import steps
-from cadpanel.errors import SettingsError
+from cadpanel.errors import DeliveryError, SettingsError
 
 
 def verify(
     folder: Annotated[
         Path,
-        typer.Argument(metavar="DIR", help="A folder that 'cadpanel fit' wrote, or a file to be held against one."),
+        typer.Argument(
+            metavar="DIR",
+            help="A folder that 'cadpanel fit' or 'cadpanel run' wrote, or a file to be held against a delivery.",
+        ),
     ],
     reference: Annotated[
         Path | None,
@@ -37,7 +40,8 @@ def verify(
 
     What needs the reference, deviation, drift and the turn of seams, is proved with --reference, and else listed.
     'cadpanel verify FILE.step --reference-delivery DIR' finds a delivery's solids in a file that another program wrote,
-    by where they lie, whatever they are called there.
+    by where they lie, whatever they are called there. Of a folder that 'cadpanel run' wrote every delivery is verified,
+    and where building.step hangs them.
 
     Exit codes: 0 all holds; 1 something does not, and it says what; 2 a file is missing or cannot be read.
     """
@@ -46,9 +50,14 @@ def verify(
             raise SettingsError("--reference measures a delivery, and --reference-delivery a file: give one of them")
         _came_back(folder, reference_delivery, quiet=quiet)
         return
+    start_reader()
+    if _is_a_jobs(folder):
+        if reference is not None:
+            raise SettingsError(f"--reference measures one delivery: name that of a region, '{folder}/NAME'")
+        _whole_job(folder, quiet=quiet)
+        return
     with steps(quiet=quiet) as shown:
         shown.begin("Read back and verify", folder.name)
-        start_reader()
         # Here, not above: help should not wait for them.
         from cadpanel.cli.tables import console, print_certificate
         from cadpanel.delivery.verify import verify as verify_delivery
@@ -64,6 +73,38 @@ def verify(
     if not quiet:
         console().print("Everything holds.")
         console().print(f"Not proved: {', '.join(found.unproved)}.")
+
+
+def _is_a_jobs(folder: Path) -> bool:
+    from cadpanel.jobs.verified import is_folder_of_a_job
+
+    try:
+        return is_folder_of_a_job(folder)
+    except OSError as error:
+        raise DeliveryError(f"'{folder}' cannot be read: {error.strerror or error}.") from error
+
+
+def _whole_job(folder: Path, *, quiet: bool) -> None:
+    """Every delivery in the folder of a job, and the assembly on top of them."""
+    from cadpanel.jobs.verified import assembly_faults, delivered_regions, verified_region
+
+    found = []
+    for name in delivered_regions(folder):
+        with steps(quiet=quiet) as shown:
+            shown.begin("Read back and verify", name)
+            found.append(verified_region(folder / name, progress=shown.count))
+    said = [f"{one.name}: {why}" for one in found for why in (one.refused, *one.failures) if why]
+    said += assembly_faults(folder, {one.name: one.hung for one in found if one.hung is not None})
+    if not quiet:
+        from cadpanel.cli.tables import console, counted
+
+        held, panels = sum(one.holds for one in found), sum(one.panels for one in found)
+        console().print(f"Deliveries that hold: {held} of {len(found)}, with {counted(panels, 'panel')}.")
+    if said:
+        complain("\n".join(("The proof does not hold:", *said, "")))
+        raise typer.Exit(2 if any(one.refused for one in found) else 1)
+    if not quiet:
+        console().print("Everything holds.")
 
 
 def _came_back(file: Path, delivery: Path, *, quiet: bool) -> None:

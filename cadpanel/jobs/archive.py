@@ -18,7 +18,13 @@ def packed(folder: Path, missed: str | None) -> bytes:
     """A delivery with its manifest, and what its tolerance or its stock lacks."""
     write_manifest(folder)
     stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED, compresslevel=_QUICKLY) as archive:
+    with zipfile.ZipFile(
+        stream,
+        "w",
+        zipfile.ZIP_DEFLATED,
+        compresslevel=_QUICKLY,
+        strict_timestamps=False,  # a clock that is not set says 1970, which it does not know
+    ) as archive:
         for path in sorted(folder.rglob("*")):
             if path.is_file():
                 archive.write(path, path.relative_to(folder).as_posix())

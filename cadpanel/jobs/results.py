@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from diskcache import Cache, Disk
+from diskcache import Cache, Disk, Timeout
 from diskcache.core import MODE_PICKLE
 from platformdirs import user_cache_path
 
@@ -21,7 +21,10 @@ from cadpanel.errors import SettingsError
 
 MOST_BYTES = 20_000_000_000
 """That all results together may take."""
+PATIENCE = 60.0
+"""s to wait for another run that writes into the index; a disk that answers no more is waited for no longer either."""
 _DIGEST = hashlib.sha256().digest_size
+_FAULTS = (sqlite3.Error, OSError, Timeout)
 
 
 def usual_folder() -> Path:
@@ -48,8 +51,14 @@ class Results:
         """
         self._folder = folder
         try:
-            self._cache = Cache(str(folder), disk=_Plain, size_limit=MOST_BYTES, eviction_policy="least-recently-used")
-        except (sqlite3.Error, OSError) as error:
+            self._cache = Cache(
+                str(folder),
+                timeout=PATIENCE,
+                disk=_Plain,
+                size_limit=MOST_BYTES,
+                eviction_policy="least-recently-used",
+            )
+        except _FAULTS as error:
             raise self._refusal(error) from error
 
     def get(self, key: str) -> bytes | None:
@@ -59,13 +68,13 @@ class Results:
             SettingsError: the folder cannot be used.
         """
         try:
-            found = self._cache.get(key, retry=True)
+            found = self._cache.get(key)
             if found is None:
                 return None
             if isinstance(found, bytes) and hashlib.sha256(found[_DIGEST:]).digest() == found[:_DIGEST]:
                 return found[_DIGEST:]
-            self._cache.delete(key, retry=True)
-        except (sqlite3.Error, OSError) as error:
+            self._cache.delete(key)
+        except _FAULTS as error:
             raise self._refusal(error) from error
         return None
 
@@ -76,8 +85,8 @@ class Results:
             SettingsError: it cannot be kept.
         """
         try:
-            self._cache.set(key, hashlib.sha256(made).digest() + made, retry=True)
-        except (sqlite3.Error, OSError) as error:
+            self._cache.set(key, hashlib.sha256(made).digest() + made)
+        except _FAULTS as error:
             raise self._refusal(error) from error
 
     def __enter__(self) -> Self:
@@ -90,6 +99,7 @@ class Results:
         self._cache.close()
 
     def _refusal(self, error: Exception) -> SettingsError:
+        why = f"it does not answer within {PATIENCE:g} s" if isinstance(error, Timeout) else error
         return SettingsError(
-            f"results cannot be kept in '{self._folder}' ({error}): delete that folder, or name another one by --cache"
+            f"results cannot be kept in '{self._folder}' ({why}): delete that folder, or name another one by --cache"
         )

@@ -39,11 +39,12 @@ def fitted_to_stock(
         length *= SHORTER
         try:
             result = fit_of(replace(how, panel_length=length))
+            if stopped():
+                return first
+            fitting = fits(result)
         except (PanelError, ReferenceFileError, SettingsError):
             return first  # the panels as asked for stand, and it is said which fit no sheet
-        if stopped():
-            return first
-        if fits(result):
+        if fitting:
             return _noted(result, length, how.panel_length or length)
     return first
 

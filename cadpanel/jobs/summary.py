@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Record, read_json, write_json
+from cadpanel.delivery.records.jsonfile import NonNegative, NonNegativeCount, Record, json_bytes, read_json
 from cadpanel.delivery.records.report import ReportModel
 from cadpanel.delivery.schedule.csv_text import Cell, csv_bytes
+from cadpanel.delivery.whole_file import write_whole
 from cadpanel.errors import DeliveryError
 
 SUMMARY, SUMMARY_TABLE = "summary.json", "summary.csv"
@@ -65,7 +66,9 @@ class SummaryModel(Record):
             the run ended before all were done.
         rows: a region each.
         assembly: name of the STEP file in which the panels of all regions hang; None where there is none.
-        unassembled: why there is none, where regions have files for it.
+        unassembled: in sentences, which regions do not hang in it, or why there is none, where they have files for it.
+        remarks: in sentences, what else whoever started it should know: of deliveries in the folder that are not what
+            the job asks for, and of results that could not be kept.
     """
 
     schema_name: Literal["cadpanel.summary/1"] = Field(default="cadpanel.summary/1", alias="schema")
@@ -73,6 +76,7 @@ class SummaryModel(Record):
     rows: tuple[RowModel, ...]
     assembly: str | None = None
     unassembled: str | None = None
+    remarks: tuple[str, ...] = ()
 
 
 def row_of(region: str, report: ReportModel, state: State, said: str | None, tries: int) -> RowModel:
@@ -100,18 +104,19 @@ def read_summary(path: Path) -> SummaryModel:
 
 
 def write_summary(summary: SummaryModel, folder: Path) -> None:
-    """Write both files; `details` stand in summary.json alone.
+    """Write both files, each whole or not at all; `details` stand in summary.json alone.
 
     Raises:
-        DeliveryError: one of them cannot be written.
+        DeliveryError: one of them cannot be written; an earlier one is as it was then.
     """
-    write_json(summary, folder / SUMMARY)
     heads = [name for name in RowModel.model_fields if name != "details"]
     rows: list[list[Cell]] = [[_cell(getattr(row, name)) for name in heads] for row in summary.rows]
-    try:
-        (folder / SUMMARY_TABLE).write_bytes(csv_bytes([heads, *rows]))
-    except OSError as error:
-        raise DeliveryError(f"'{folder / SUMMARY_TABLE}' cannot be written: {error.strerror}.") from error
+    files = {SUMMARY: json_bytes(summary, folder / SUMMARY), SUMMARY_TABLE: csv_bytes([heads, *rows])}
+    for name, data in files.items():
+        try:
+            write_whole(folder / name, data)
+        except OSError as error:
+            raise DeliveryError(f"'{folder / name}' cannot be written: {error.strerror or error}.") from error
 
 
 def _cell(value: str | float | int | bool | None) -> Cell:

@@ -43,6 +43,11 @@ def test_a_job_is_run_told_and_summed_up_and_its_worst_region_is_the_exit_code(
     assert "1 region of 2 with 3 panels, 1 made now" in answer.out
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"A", "job.toml", "summary.csv", "summary.json"}
 
+    verified = run("verify", tmp_path / "out")
+    assert verified.code == 2
+    assert "Deliveries that hold: 1 of 2, with 3 panels." in verified.out
+    assert verified.err.endswith("B: job.toml has the region, and it is not delivered: run the job.\n")
+
     job.write_text(JOB.partition("[regions.B]")[0], encoding="utf-8")
     told = run(*words, "--tell-steps", "--quiet")
     assert (told.code, told.out) == (1, "")
@@ -54,6 +59,29 @@ def test_a_job_is_run_told_and_summed_up_and_its_worst_region_is_the_exit_code(
     assert kept.err.count("\n") == 1
     assert (tmp_path / "other" / "A" / "job.toml").is_file()
     assert run("verify", tmp_path / "other" / "A", "--quiet").code == 0
+    verified = run("verify", tmp_path / "other")
+    assert (verified.code, verified.err) == (0, "")
+    assert "Deliveries that hold: 1 of 1, with 3 panels.\nEverything holds.\n" in verified.out
+    assert run("verify", tmp_path / "other", "--quiet").out == ""
+    refused = run("verify", tmp_path / "other", "--reference", job)
+    assert (refused.code, refused.is_one_sentence()) == (2, True)
+    assert "name that of a region" in refused.err
+
+
+def test_variants_that_do_not_hang_and_deliveries_that_are_no_region_are_named(
+    run: Run, job: Path, tmp_path: Path
+) -> None:
+    words = ("run", job, "--cache", tmp_path / "cache")
+    job.write_text(JOB.replace("method", "matrix = {joint = [5, 8]}\nmethod"), encoding="utf-8")
+    answer = run(*words)
+    assert "only the first of each hangs there, not 'A-joint=8'." in answer.out
+    job.write_text(JOB.replace("regions.A", "regions.Other"), encoding="utf-8")
+    refused = run(*words)
+    assert (refused.code, refused.is_one_sentence()) == (2, True)
+    assert "lacks ('A-joint=5', 'A-joint=8'): name another folder" in refused.err
+    for quiet in ((), ("--quiet",)):
+        answer = run(*words, "--overwrite", *quiet)
+        assert "by an earlier job and no region of this one: 'A-joint=5', 'A-joint=8'" in answer.out + answer.err
 
 
 def test_python_runs_a_job_as_the_command_does(job: Path, tmp_path: Path) -> None:

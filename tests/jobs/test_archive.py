@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -25,3 +26,11 @@ def test_a_folder_comes_out_as_it_went_in_and_any_changed_byte_is_found(tmp_path
 def test_nothing_is_missed_where_nothing_is_said(tmp_path: Path) -> None:
     (tmp_path / "in").mkdir()
     assert unpacked(packed(tmp_path / "in", None), tmp_path / "out") is None
+
+
+def test_files_of_a_clock_that_is_not_set_are_packed_all_the_same(tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "report.json").write_bytes(b"{}")
+    os.utime(tmp_path / "in" / "report.json", (0.0, 0.0))
+    unpacked(packed(tmp_path / "in", None), tmp_path / "out")
+    assert (tmp_path / "out" / "report.json").read_bytes() == b"{}"

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+import sqlite3
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 from diskcache import Cache
 
 from cadpanel.errors import SettingsError
+from cadpanel.jobs import results as kept
 from cadpanel.jobs.results import Results, usual_folder
 
 LARGE = bytes(range(256)) * 400
@@ -69,6 +72,23 @@ def test_a_damaged_index_is_refused_with_what_to_do(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(SettingsError, match="cannot be kept"):
         Results(tmp_path / "file" / "cache")
+
+
+def test_an_index_that_does_not_answer_is_waited_for_only_so_long(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kept, "PATIENCE", 0.01)
+    with Results(tmp_path) as results:
+        results.put("key", LARGE)
+        with closing(sqlite3.connect(tmp_path / "cache.db", isolation_level=None)) as another:
+            another.execute("BEGIN IMMEDIATE")
+            for ask in (lambda: results.get("key"), lambda: results.put("other", LARGE)):
+                with pytest.raises(
+                    SettingsError, match=r"does not answer within 0\.01 s\): delete that folder, or name"
+                ):
+                    ask()
+            another.execute("ROLLBACK")
+        assert results.get("key") == LARGE
 
 
 def test_the_usual_folder_is_one_for_what_can_be_made_again() -> None:

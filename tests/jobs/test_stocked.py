@@ -60,3 +60,14 @@ def test_where_nothing_fits_cannot_be_cut_or_is_stopped_panels_are_as_asked_for(
     answers = iter([False, True])
     assert fitted_to_stock(LONG, fit_of, lambda _: False, lambda: next(answers)).reference.settings == LONG
     assert list(answers) == []
+
+
+def test_shorter_panels_that_cannot_be_built_refuse_nothing() -> None:
+    """Nobody asked for them; whether blanks fit is asked of panels as they are built, returns and all."""
+
+    def built(result: Any) -> bool:
+        if result.reference.settings != LONG:
+            raise PanelError("S1-09", "its return does not fit")
+        return False
+
+    assert fitted_to_stock(LONG, fit_of, built, lambda: False).reference.settings == LONG

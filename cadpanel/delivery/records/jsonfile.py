@@ -110,18 +110,37 @@ def write_json(record: Record, path: Path) -> None:
     """Write a record as indented UTF-8 JSON, keys in the order in which the record lists them.
 
     Raises:
-        DeliveryError: the file cannot be written, or an added key holds a number that is not finite.
+        DeliveryError: the file cannot be written, or holds what `json_bytes` refuses.
+    """
+    data = json_bytes(record, path)
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise DeliveryError(f"'{path}' cannot be written: {error.strerror}.") from error
+
+
+def json_bytes(record: Record, path: Path) -> bytes:
+    """What `write_json` writes to a file.
+
+    Raises:
+        DeliveryError: an added key holds a number that is not finite, or a name is no text, as that of a file may be
+            that comes from a system of another encoding.
     """
     try:
         with garbage_left():
             content = record.model_dump(mode="json", by_alias=True)
             text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+        return f"{text}\n".encode()
+    except UnicodeEncodeError as error:
+        name = _quoted_at(error.object, error.start).encode("ascii", "backslashreplace").decode()
+        raise DeliveryError(f"'{path}' is not written: '{name}' is no text in UTF-8: rename it.") from error
     except ValueError as error:
         raise DeliveryError(f"'{path}' is not written: {error}.") from error
-    try:
-        path.write_bytes(f"{text}\n".encode())
-    except OSError as error:
-        raise DeliveryError(f"'{path}' cannot be written: {error.strerror}.") from error
+
+
+def _quoted_at(text: str, place: int) -> str:
+    """What stands between the quotes around a place of a JSON text."""
+    return text[text.rindex('"', 0, place) + 1 : text.index('"', place)]
 
 
 def _refuse_constant(name: str) -> NoReturn:

@@ -64,25 +64,31 @@ def _is_there(path: Path, handle: int) -> bool:
 
 
 if sys.platform == "win32":
-    import msvcrt
+    from msvcrt import LK_NBLCK, locking
 
-    def _is_taken(handle: int) -> bool:
-        try:
-            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
-        except PermissionError:
-            return True
-        except OSError:
-            return False  # a disk that knows no locks: a run there is as safe as it was without
-        return False
+    def _lock(handle: int) -> None:
+        """Lock a file, or raise a PermissionError where another has it."""
+        locking(handle, LK_NBLCK, 1)
 else:
-    import fcntl
+    try:
+        from fcntl import LOCK_EX, LOCK_NB, flock
+    except ImportError:  # a system that knows no locks
 
-    def _is_taken(handle: int) -> bool:
-        """Whether another has the lock; else it is ours now, as long as the handle is open."""
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return True
-        except OSError:
-            return False  # a disk that knows no locks: a run there is as safe as it was without
-        return False
+        def _lock(handle: int) -> None:
+            """Nothing."""
+    else:
+
+        def _lock(handle: int) -> None:
+            """Lock a file as long as the handle is open, or raise a BlockingIOError where another has it."""
+            flock(handle, LOCK_EX | LOCK_NB)
+
+
+def _is_taken(handle: int) -> bool:
+    """Whether another has the lock; else it is ours now."""
+    try:
+        _lock(handle)
+    except (PermissionError, BlockingIOError):
+        return True
+    except OSError:
+        return False  # a disk that knows no locks: a run there is as safe as it was without
+    return False

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path, PurePosixPath
 
-from cadpanel.brep.step.hung_files import hung_files
+from cadpanel.brep.step.hung_files import HungFile, hung_files, is_written_here
 from cadpanel.delivery.hung import Hung, hung_by
 from cadpanel.delivery.outputs.step_files import PANELS
 from cadpanel.delivery.own_files import JOB, MARKS_OF_A_DELIVERY
+from cadpanel.delivery.settings import Schema
 from cadpanel.delivery.sheets import Progress
 from cadpanel.errors import CadpanelError, DeliveryError
 from cadpanel.jobs.building import BUILDING
 from cadpanel.jobs.folder import is_delivered, regions_of
 from cadpanel.jobs.resolved import is_a_job
+from cadpanel.jobs.summary import SUMMARY, read_summary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,19 +104,66 @@ def assembly_faults(out: Path, hung: Mapping[str, Hung]) -> Iterator[str]:
     if not os.path.lexists(path):
         return
     try:
+        if not is_written_here(path):
+            yield f"'{path}' is not as cadpanel wrote it: move it elsewhere, and run the job again."
+            return
         files = hung_files(path)
+    except OSError as error:
+        yield f"'{path}' cannot be read: {error.strerror or error}."
+        return
     except DeliveryError as error:
         yield str(error)
         return
-    for file in files:
+    faults = [*_faults_of_parts(out, files, hung), *_not_hung(out, files, hung)]
+    yield from faults
+    if not faults and _data(path.read_text(encoding="ascii")) != _data(_as_written(files, hung)):
+        yield f"'{path}' says otherwise than the deliveries that hang in it: run the job again."
+
+
+def _faults_of_parts(out: Path, files: Sequence[HungFile], hung: Mapping[str, Hung]) -> Iterator[str]:
+    """What is wrong with the parts that it names."""
+    for file, times in Counter(files).items():
         name = str(PurePosixPath(file.path).parent)
         if file.path != f"{name}/{PANELS}" or not (out / file.path).is_file():
             yield f"{BUILDING} names '{file.path}', and there is no such file: run the job again."
+        elif times > 1:
+            yield f"{BUILDING} hangs '{name}' {times} times: run the job again."
         elif name in hung and file.placed != hung[name].placed:
             yield (
                 f"{BUILDING} hangs '{name}' at {_told(file.placed)} mm, and its report at {_told(hung[name].placed)} "
                 "mm: run the job again."
             )
+
+
+def _not_hung(out: Path, files: Sequence[HungFile], hung: Mapping[str, Hung]) -> Iterator[str]:
+    """The deliveries of the job that do not hang in it, but for those of which the summary says so."""
+    named = {file.path for file in files}
+    left_out = (read_summary(out / SUMMARY).unassembled or "") if (out / SUMMARY).is_file() else ""
+    for name in regions_of(out / JOB):
+        path = f"{name}/{PANELS}"
+        if name in hung and (out / path).is_file() and path not in named and f"'{name}'" not in left_out:
+            yield f"'{name}' does not hang in {BUILDING}: run the job again."
+
+
+def _as_written(files: Sequence[HungFile], hung: Mapping[str, Hung]) -> str:
+    """The assembly of these files as the deliveries' reports have it; of a delivery that cannot be read, as it says."""
+    from cadpanel.brep.step.part_files import PartFile, write_assembly_text  # it loads the kernel
+
+    names = [str(PurePosixPath(file.path).parent) for file in files]
+    placed = [hung[name].placed if name in hung else file.placed for name, file in zip(names, files, strict=True)]
+    parts = [
+        PartFile(name=name, path=file.path, placed=place)
+        for name, file, place in zip(names, files, placed, strict=True)
+    ]
+    text = StringIO()
+    schema: Schema = next((hung[name].schema for name in names if name in hung), "AP242")
+    write_assembly_text(text, parts, Path(BUILDING).stem, schema)
+    return text.getvalue()
+
+
+def _data(text: str) -> str:
+    """What stands behind the header, which has a date."""
+    return text.partition("\nDATA;\n")[2]
 
 
 def _told(place: tuple[float, float, float]) -> str:

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from cadpanel.delivery.assemble import assemble
 from cadpanel.delivery.hung import hung_by
 from cadpanel.delivery.records.report import read_report
 from cadpanel.delivery.sheets import say_nothing
+from cadpanel.jobs.summary import read_summary, write_summary
 from cadpanel.jobs.verified import assembly_faults, delivered_regions, is_folder_of_a_job, verified_region
 
 
@@ -52,6 +54,44 @@ def test_what_the_assembly_says_otherwise_than_the_reports_is_named(out: Path) -
     assert "names 'C/panels.step', and there is no such file" in fault
     (out / "building.step").write_bytes(b"ISO-10303-21;")
     (fault,) = assembly_faults(out, hung)
-    assert "is no assembly of files as cadpanel writes it" in fault
+    assert "is not as cadpanel wrote it: move it elsewhere" in fault
     (out / "building.step").unlink()
+    (out / "building.step").mkdir()
+    (fault,) = assembly_faults(out, hung)
+    assert "building.step' cannot be read: Is a directory." in fault
+    (out / "building.step").rmdir()
     assert list(assembly_faults(out, hung)) == []
+
+
+@pytest.mark.parametrize(
+    ("written", "other", "said"),
+    [
+        ("'B/panels.step'", "'A/panels.step'", ["hangs 'A' 2 times", "'B' does not hang in building.step"]),
+        ("CARTESIAN_POINT('',(0.0,0.0,0.0))", "CARTESIAN_POINT('',(5.0,0.0,0.0))", ["hangs", "hangs", "hangs"]),
+        ("DIRECTION('',(1.,0.,0.))", "DIRECTION('',(0.,1.,0.))", ["says otherwise than the deliveries"]),
+        ("_ASSIGNMENT('B/panels.step'", "_ASSIGNMENT('A/panels.step'", ["says otherwise than the deliveries"]),
+        ("PRODUCT('building/B'", "PRODUCT('building/A'", ["says otherwise than the deliveries"]),
+        (".MILLI.", "$", ["says otherwise than the deliveries"]),
+        ("DATA;", "DATA;\n#999=DIRECTION('',(0.,1.,0.));", ["says otherwise than the deliveries"]),
+    ],
+)
+def test_every_word_of_the_assembly_is_proved(out: Path, written: str, other: str, said: list[str]) -> None:
+    hung = {name: hung_by(read_report(out / name / "report.json")) for name in "ABC"}
+    path = out / "building.step"
+    text = path.read_text(encoding="ascii")
+    assert written in text
+    path.write_text(text.replace(written, other), encoding="ascii")
+    faults = list(assembly_faults(out, hung))
+    assert len(faults) == len(said)
+    assert all(word in fault for word, fault in zip(said, faults, strict=True))
+
+
+def test_what_the_summary_says_does_not_hang_there_need_not(out: Path) -> None:
+    hung = {name: hung_by(read_report(out / name / "report.json")) for name in "ABC"}
+    summary = read_summary(out / "summary.json")
+    write_summary(summary.model_copy(update={"unassembled": "Not 'C'."}), out)
+    assemble([out / "A", out / "B"], out / "building.step")
+    assert list(assembly_faults(out, hung)) == []
+    write_summary(summary, out)
+    (fault,) = assembly_faults(out, hung)
+    assert fault == "'C' does not hang in building.step: run the job again."

@@ -27,7 +27,7 @@ from cadpanel.cli.init import init
 from cadpanel.cli.inspect import inspect
 from cadpanel.cli.interrupt import interrupts_stop_once
 from cadpanel.cli.loft import loft
-from cadpanel.cli.printable import complain, forgive_encodings
+from cadpanel.cli.printable import complain, forgive_encodings, stand_in_for_closed_streams
 from cadpanel.cli.run import run
 from cadpanel.cli.study import study
 from cadpanel.cli.verify import verify
@@ -102,6 +102,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sentence on stderr; 3 something that was not foreseen; 130 interrupted; 143 killed.
     """
     own_process()
+    stand_in_for_closed_streams()
     forgive_encodings()
     for gone in _goodbyes():
         if signal.getsignal(gone) is not signal.SIG_IGN:  # nohup wants it ignored

@@ -31,6 +31,14 @@ def complain(text: str) -> None:
         sys.stderr.write(printable(text))
 
 
+def stand_in_for_closed_streams() -> None:
+    """Give what whoever started the program has closed to nobody; else the next file that is opened took its place."""
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            mode = "r" if name == "stdin" else "w"
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115, PTH123 - until the very end
+
+
 def forgive_encodings() -> None:
     """Let the standard streams show by its number what their encoding has no sign for."""
     for stream in (sys.stdout, sys.stderr):

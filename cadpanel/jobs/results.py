@@ -100,6 +100,6 @@ class Results:
 
     def _refusal(self, error: Exception) -> SettingsError:
         why = f"it does not answer within {PATIENCE:g} s" if isinstance(error, Timeout) else error
-        return SettingsError(
-            f"results cannot be kept in '{self._folder}' ({why}): delete that folder, or name another one by --cache"
-        )
+        damaged = isinstance(error, sqlite3.DatabaseError) and not isinstance(error, sqlite3.OperationalError)
+        remedy = "delete that folder, or name another one by --cache" if damaged else "name another folder by --cache"
+        return SettingsError(f"results cannot be kept in '{self._folder}' ({why}): {remedy}")

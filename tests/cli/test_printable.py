@@ -83,3 +83,10 @@ def test_what_nobody_foresaw_is_one_sentence_and_a_file(
     assert "(ZeroDivisionError: nobody thought of it): the details are in '" in said
     assert str(file) in said
     assert "Traceback" in file.read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of POSIX closes them")
+def test_a_program_whose_streams_are_closed_does_its_work(lip_step: Path, tmp_path: Path) -> None:
+    words = f'exec "{sys.executable}" -m cadpanel.cli.main inspect "{lip_step}" <&- >&- 2>&-'
+    assert subprocess.run(["sh", "-c", words], cwd=tmp_path, timeout=60, check=False).returncode == 0
+    assert list(tmp_path.iterdir()) == []

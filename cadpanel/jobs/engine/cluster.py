@@ -105,8 +105,12 @@ class Cluster:
         """
         import dask
         from distributed import Client
+        from distributed.utils import silence_logging_cmgr
 
         with ExitStack() as opened:
+            # A scheduler that is gone is told in one sentence, and not also by the log of the client.
+            for logger in ("distributed", "distributed.client"):
+                opened.enter_context(silence_logging_cmgr(logging.CRITICAL + 1, logger))
             opened.enter_context(dask.config.set(_SETTINGS | (_CALM if self._scheduler is None else {})))
             where: Any = self._scheduler
             if where is None:

@@ -225,9 +225,8 @@ class _Run:
         """A delivery could not be put in its place, or not all that was to be done then."""
         target = self._place.out / region.name
         said = str(error) if isinstance(error, DeliveryError) else f"'{target}' cannot be written: {error}."
-        if self._is_there(
-            region, task
-        ):  # another has put the same there, or what stood there before could not be deleted
+        # Another has put the same there, or what stood there before could not be deleted.
+        if self._is_there(region, task):
             self._remarks += [said] if self._place.overwrite else []
             self._stands(region)
         else:

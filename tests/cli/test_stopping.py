@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from cadpanel.delivery.manifest import changed_files
 from cadpanel.jobs.summary import SUMMARY, read_summary
 from tests.jobs.jobs import job, reference
 from tests.thorough import cases, thorough
+from tests.waiting import until
 
 PROGRAM = [sys.executable, "-m", "cadpanel.cli.main"]
 # The program, which makes a file once the reference is read: what follows is the fit.
@@ -118,10 +119,7 @@ def started(lip_step: Path, tmp_path: Path, told: Path | None) -> Iterator[subpr
         preexec_fn=heed_every_signal,
     ) as process:
         try:
-            give_up = time.monotonic() + 60.0
-            while not (list(tmp_path.glob(".cadpanel-*")) if told is None else told.exists()):
-                assert time.monotonic() < give_up
-                time.sleep(0.05)
+            until(lambda: list(tmp_path.glob(".cadpanel-*")) if told is None else told.exists(), seconds=60.0)
             time.sleep(GETS_GOING)
             assert process.poll() is None
             yield process
@@ -176,14 +174,6 @@ def run_of_many(folder: Path, *more: str) -> Iterator[subprocess.Popen[str]]:
             yield process
         finally:
             process.kill()
-
-
-def until(found: Callable[[], object]) -> None:
-    """Wait for something."""
-    give_up = time.monotonic() + 120.0
-    while not found():
-        assert time.monotonic() < give_up
-        time.sleep(0.05)
 
 
 @thorough

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,7 @@ import pytest
 from cadpanel.brep.isolation.beside import POSSIBLE
 from tests.brep.isolation.running import ends
 from tests.thorough import thorough
+from tests.waiting import until
 
 # The program, whose second interpreter runs another module.
 PROGRAM = """
@@ -83,10 +83,7 @@ def test_an_interrupt_of_a_whole_terminal_while_a_file_is_read_ends_everything(
         start_new_session=True,
     ) as process:
         try:
-            give_up = time.monotonic() + 120.0
-            while not told.exists():
-                assert time.monotonic() < give_up
-                time.sleep(0.05)
+            until(told.exists)
             readers = [int(number) for number in told.read_text().split()]
             os.killpg(process.pid, signal.SIGINT)
             _, err = process.communicate(timeout=30)

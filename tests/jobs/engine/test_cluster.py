@@ -24,6 +24,7 @@ from cadpanel.jobs.work import FAILED, MET, Made
 from tests.jobs.conftest import REGIONS
 from tests.jobs.jobs import files, job, made, parts
 from tests.thorough import thorough
+from tests.waiting import until
 
 
 def test_a_missing_package_and_a_missing_scheduler_are_sentences(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -207,10 +208,7 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
         stderr=subprocess.DEVNULL,
     ) as process:
         try:
-            give_up = time.monotonic() + 120.0
-            while not told.exists():
-                assert time.monotonic() < give_up
-                time.sleep(0.05)
+            until(told.exists)
             yield json.loads(told.read_text())["address"], process
         finally:
             process.kill()
